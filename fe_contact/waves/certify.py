@@ -24,6 +24,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from operator import attrgetter
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -146,7 +147,7 @@ def _judged(runs: WaveRuns, number: int, numerics: WaveNumerics) -> Judged:
     cheap, changed = numerics.varied(steps=runs.cheap), partial(_changed, partial(runs.curve, number))
     (mesh, by_mesh), half = tells_of_mesh(cheap), numerics.varied(steps=numerics.steps // 2)
     penalty, stiffer = other_setting(cheap, "penalty")
-    coarse = min(cheap, mesh, key=_nodes)  # it is fine enough to tell of the far field
+    coarse = min(cheap, mesh, key=attrgetter("elements_per_contact"))  # it is fine enough to tell of the far field
     far, farther = other_setting(coarse, "far_radius")
     changes: dict[str, Causes] = {
         "mesh": (changed(cheap, mesh, by_mesh), reading(contact.march, contact.strike, numerics)),
@@ -155,11 +156,6 @@ def _judged(runs: WaveRuns, number: int, numerics: WaveNumerics) -> Judged:
         "far_field": (changed(coarse, far, factor(ORDER["far_field"], farther)),),
     }
     return curve_of(contact.march, contact.strike, numerics), changes
-
-
-def _nodes(settings: WaveNumerics) -> float:
-    """Along the contact radius."""
-    return settings.elements_per_contact * settings.order
 
 
 class Moved(Variation):

@@ -21,6 +21,7 @@ from fe_contact.waves import certify
 from fe_contact.waves.certify import Waves
 from fe_contact.waves.plan import DEFAULTS
 from lumped.errors import NotReached
+from lumped.result.result import Quantity
 
 SETTINGS: dict[str, Any] = {"tolerance": 3e-3, "steps": 200, "contact_radius": 1e-3, "contact_time": 1e-3}
 
@@ -110,3 +111,64 @@ def test_a_touch_is_as_uncertain_as_contact_and_flight_before_it(monkeypatch: py
     starts = Row.starts.func(row)
     for number, start in enumerate(starts):
         assert start == pytest.approx(dict.fromkeys(CAUSES, number * (1e-5 + 2.0 * 3.0 / 9.81 * 1e-4)))
+
+
+def contact(number: int) -> Any:
+    """One of a row, values and errors made up, each of another size: the second the hardest, the third the deepest."""
+    values = {"peak_force": (5.0, 9.0, 7.0)[number], "peak_depth": (1e-3, 2e-3, 3e-3)[number], "impulse": 0.2 + number}
+    values |= {"duration": 0.05 + 0.01 * number, "restitution": 0.9 - 0.1 * number, "peak_time": 0.02 + 3e-3 * number}
+    errors = {name: 1e-3 * (number + 1) * value for name, value in values.items()} | {"history_l2": 1e-3 * (3 - number)}
+    strike = SimpleNamespace(velocity=3.0 - number, gravity=9.81, touched_at=0.7 * number)
+    return SimpleNamespace(
+        curve=SimpleNamespace(strike=strike, quantities=values),
+        quantities={name: Quantity(value, len(CAUSES) * errors[name], "") for name, value in values.items()},
+        error=lambda name, cause: errors[name],
+    )
+
+
+@pytest.fixture
+def row(monkeypatch: pytest.MonkeyPatch) -> Row:
+    """Three contacts; no setting moves a touch by itself."""
+    monkeypatch.setattr(several, "_moved", lambda budget, read: dict.fromkeys(CAUSES, 0.0))
+    found: Any = SimpleNamespace(row=[contact(number) for number in range(3)])
+    return Row(found)
+
+
+def test_every_contact_is_told_by_its_own_touch_which_errs_more_from_one_to_the_next(row: Row) -> None:
+    causes, late = len(CAUSES), 0.0
+    for number, (told, one) in enumerate(zip(row.contacts, row.budgets, strict=True)):
+        if number:
+            before = row.budgets[number - 1]
+            by_flight = 2.0 * before.curve.strike.velocity / 9.81 * before.error("restitution", "")
+            late += causes * (before.error("duration", "") + by_flight)
+            wrong = causes * before.curve.strike.velocity * before.error("restitution", "")
+            assert told["velocity_error"] == pytest.approx(wrong)
+        assert told["start"] == pytest.approx(0.7 * number)
+        assert told["start_error"] == pytest.approx(late)
+        assert told["velocity"] == 3.0 - number
+        assert told["peak_time"] == pytest.approx(0.7 * number + one.curve.quantities["peak_time"])
+        assert told["peak_time_error"] == pytest.approx(late + causes * one.error("peak_time", ""))
+        for name in ("duration", "restitution", "peak_force", "peak_depth"):
+            assert told[name] == one.curve.quantities[name]
+            assert told[f"{name}_error"] == pytest.approx(causes * one.error(name, ""))
+    assert row.contacts[0]["velocity_error"] == 0.0
+
+
+def test_a_quantity_of_all_contacts_is_told_by_one_of_them_or_by_their_sum(row: Row) -> None:
+    causes, all_of = len(CAUSES), row.quantities
+    first, second, third = row.budgets
+    tellers = {"peak_force": second, "peak_depth": third, "duration": first, "restitution": first}
+    for name, one in tellers.items():
+        assert all_of[name].value == one.curve.quantities[name]
+        assert all_of[name].error == pytest.approx(causes * one.error(name, ""))
+    assert all_of["peak_time"].value == pytest.approx(0.7 + second.curve.quantities["peak_time"])
+    assert all_of["peak_time"].error == pytest.approx(row.late(1) + causes * second.error("peak_time", ""))
+    assert all_of["impulse"].value == pytest.approx(0.2 + 1.2 + 2.2)
+    assert all_of["impulse"].error == pytest.approx(causes * sum(one.error("impulse", "") for one in row.budgets))
+    assert all_of["history_l2"].value == 0.0
+    assert all_of["history_l2"].error == pytest.approx(causes * 3e-3), "that of the worst"
+
+
+def test_what_still_presses_gives_nothing_back_and_has_no_bar_of_that(row: Row) -> None:
+    row.budgets[0].curve.quantities["restitution"] = None
+    assert row.quantities["restitution"] == Quantity(None, None, "1")

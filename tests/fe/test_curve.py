@@ -65,6 +65,14 @@ def test_a_force_that_jitters_from_step_to_step_is_read_through_fewer() -> None:
     assert np.abs(calm.force(time) - true.force(time)).max() < 0.2 * off
 
 
+@pytest.mark.parametrize(
+    ("steps", "jitter", "left"), [(256, 1e-9, 256), (256, 4e-9, 128), (52, 1e-3, 26), (44, 1e-3, 44)]
+)
+def test_steps_are_left_out_as_soon_as_they_jitter_more_than_they_tell(steps: int, jitter: float, left: int) -> None:
+    """A jitter of 2.5e-9 changes as much of the history as half of 128 steps; and a peak needs some 24 of them."""
+    assert len(calmest(bump(steps, jitter)).x) == left + 1
+
+
 @pytest.mark.parametrize("steps", [40, 80, 256])
 def test_a_smooth_force_keeps_its_steps(steps: int) -> None:
     assert len(calmest(bump(steps, 0.0)).x) == steps + 1

@@ -10,8 +10,9 @@ import pytest
 from skfem import Basis, ElementTriP4, FacetBasis
 
 import meshes
-from fe_contact.assembly.far_field import boussinesq, flamant, robin
+from fe_contact.assembly.far_field import BEYOND, boussinesq, flamant, plane_robin, robin
 from fe_contact.assembly.forms import isotropic
+from fe_contact.assembly.operators import basis_on, boundary
 from fe_contact.budget.certify import certify
 from fe_contact.budget.plan import plan
 from fe_contact.budget.runs import Runs
@@ -21,6 +22,7 @@ from fe_contact.settings import Numerics
 from fe_contact.steppers.scaled_surface import ScaledSurface
 from fe_contact.steppers.steps import Strike
 from fe_contact.targets import half_space
+from fe_contact.targets.layer import _mesh, matrix
 from lumped import Relaxation, Scene
 from lumped.load_curves import Hertz
 from lumped.shapes import Parabola
@@ -188,3 +190,36 @@ def test_a_lift_of_the_whole_contact_changes_the_force_by_twice_its_share() -> N
     assert isinstance(surface, ScaledSurface)
     lifted = replace(surface, operator=replace(surface.operator, response=surface.operator.response + lift))
     assert compliance_change(surface, lifted) == pytest.approx(1.5 * lift * 4.0 / 3.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("nu", POISSON)
+def test_the_boundary_of_a_plane_holds_the_line_force_exactly(nu: float) -> None:
+    """As that of the point force: what sinks as Flamant's field is held as by his tractions, in all by the force."""
+    facets = boundary(basis_on(meshes.half_space(4.0, 20.0), 4), ("far",))
+    position = np.asarray(facets.global_coordinates())
+    matrix = plane_robin(facets, nu).tocsr()
+    assert abs(matrix - matrix.T).max() < 1e-14 * abs(matrix).max()
+    origin = np.exp(BEYOND) * np.hypot(*position).min()
+    nodes = np.unique(facets.get_dofs("far").flatten())
+    places = facets.doflocs[:, nodes]
+    motion = np.zeros(2 * facets.N)
+    motion[2 * nodes], motion[2 * nodes + 1] = flamant(places, places, nu, origin)[0]
+    assert (matrix @ motion)[1::2].sum() == pytest.approx(-1.0, rel=1e-4)
+    displacement, traction = flamant(position, np.asarray(facets.normals), nu, origin)
+    work = -2.0 * (np.asarray(facets.dx) * (displacement * traction).sum(axis=0)).sum()
+    assert motion @ (matrix @ motion) == pytest.approx(work, rel=1e-4)
+
+
+@pytest.mark.parametrize(("bonded", "plane", "beyond"), [(True, False, 0.0), (False, False, 4.0), (False, True, 0.0)])
+def test_only_what_slides_around_an_axis_is_held_from_beyond_its_sides(
+    bonded: bool, plane: bool, beyond: float
+) -> None:
+    """An even growth along the layer stretches it alone, and the plate around by p = 2 G/r u (Lame)."""
+    bulk, shear = 0.7, 0.4
+    basis = basis_on(_mesh(4.0, 0.3, 1.5, 6.0), 2)
+    width, thickness = np.ptp(basis.doflocs, axis=1)
+    growth = np.zeros(2 * basis.N)
+    growth[::2] = basis.doflocs[0]
+    within = 2.0 * width * (bulk + 4.0 / 3.0 * shear) if plane else np.pi * width**2 * (4.0 * bulk + 4.0 / 3.0 * shear)
+    energy = growth @ (matrix(basis, bonded, plane, bulk, shear) @ growth)
+    assert energy == pytest.approx(thickness * (within + beyond * np.pi * shear * width**2), rel=1e-9)

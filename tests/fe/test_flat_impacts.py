@@ -15,6 +15,7 @@ import scipy.sparse.linalg as linalg
 import fe_contact
 from fe_contact.march.impacts import SurfaceBouncer, follow
 from fe_contact.reference import solve
+from fe_contact.schemes.base import SCHEMES
 from fe_contact.settings import Numerics
 from fe_contact.steppers.flat_end import FlatEnd, FlatStepper
 from fe_contact.steppers.steps import Strike
@@ -234,3 +235,13 @@ def test_a_punch_that_a_dashpot_stops_within_few_steps_ends_by_name() -> None:
     scene = Scene(Punch(radius), 0.05, 0.05, solid, model=Model(gravity=1.9))
     with pytest.raises(NotReached, match="steps reached only"):
         fe_contact.run(scene, 1e-2, numerics={"steps": 40})
+
+
+@pytest.mark.parametrize("scheme", SCHEMES.names)
+def test_a_step_stands_where_its_scheme_reads_it(scheme: str, hertz_strike: Strikes, settings_of: Settings) -> None:
+    strike = hertz_strike()
+    stepper = FlatStepper(strike, 2.0, 1.0, settings_of(strike, scheme=scheme))
+    first = stepper.step(stepper.touch(), (), 0.01)
+    second = stepper.step(first.state, (first,), 0.03)
+    assert first.radius_time == pytest.approx(0.01 * SCHEMES.get(scheme).sample)
+    assert second.radius_time == pytest.approx(0.01 + 0.03 * SCHEMES.get(scheme).sample)

@@ -457,3 +457,25 @@ def test_the_squared_radius_is_told_at_shares_of_any_contact(rows: int) -> None:
     assert shares[-1] == 1.0
     assert np.all(np.diff(shares) >= 0.0)
     np.testing.assert_allclose(squares, end**2 * shares * (1.0 - shares), atol=1e-3 * end**2)
+
+
+def trusted(order: int, relaxation: Relaxation, flat: bool) -> Any:
+    """What three runs show that err by the scheme's own order."""
+    strike = replace(STRIKE, relaxation=relaxation)
+    fine, half, quarter = (
+        replace(made_up(STEPS // 2**number, lambda s, e=error: e * s * (1.5 + np.cos(2.0 * s))), strike=strike)
+        for number, error in enumerate((1e-4, 1e-4 * 2**order, 1e-4 * 4**order))
+    )
+    return trust((fine, half, quarter), order, (1.0 / STEPS, 1.0 / STEPS), flat).orders
+
+
+@pytest.mark.parametrize("order", [1, 2])
+@pytest.mark.parametrize("flat", [False, True])
+def test_a_branch_far_longer_than_a_step_takes_no_order_but_where_a_first_one_lags(order: int, flat: bool) -> None:
+    """Backward differences of a contact that grows lag behind what relaxes: nothing is left to extrapolate."""
+    slow, elastic = (trusted(order, one, flat) for one in (Relaxation(1.0, (1.0,), (30.0 / STEPS,)), Relaxation(1.0)))
+    lags = order == 1 and not flat
+    assert elastic["force"] == order + 1.0
+    assert slow["force"] == (order if lags else order + 1.0)
+    assert slow["impulse"] == order
+    assert elastic["impulse"] == order + 1.0

@@ -9,7 +9,7 @@ from scipy.integrate import quad
 from fe_contact.bodies.memory import step_law
 from fe_contact.bodies.pressing import contact_end
 from fe_contact.schemes.base import SCHEMES
-from fe_contact.steppers.struck import just_open, opened
+from fe_contact.steppers.struck import _median, just_open, opened
 from lumped.materials import Relaxation
 
 galerkin = SCHEMES.get("galerkin")
@@ -83,3 +83,9 @@ def test_an_elastic_gap_is_its_own_mean() -> None:
         memory = just_open(before, len(modulus.times))
         _, found = opened(memory, step_law(modulus, galerkin, 0.1), after)
         np.testing.assert_allclose(found, 1.5 * (before + after), rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.parametrize("count", [1, 2, 7, 8])
+def test_the_gap_is_counted_from_the_middle_one_of_those_that_touch(count: int) -> None:
+    values = np.random.default_rng(count).normal(size=count)
+    assert _median(values) == pytest.approx(float(np.median(values)), rel=1e-15)

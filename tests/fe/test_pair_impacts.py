@@ -9,15 +9,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
 import fe_contact
+import meshes
+from fe_contact.assembly.operators import surface_operator
 from fe_contact.budget.certify import MESH_ORDER_ANYWHERE, other_mesh
 from fe_contact.budget.plan import plan
 from fe_contact.fields import felt, peak_step
 from fe_contact.reference import solve
+from fe_contact.steppers.stacked import Stacked
 from fe_contact.steppers.struck import Deformable
 from fe_contact.studies.compare.study import known
 from fe_contact.targets.base import struck
@@ -206,3 +211,16 @@ def test_two_bodies_of_constant_bulk_modulus_tend_to_elastic_ones(pace: float, a
         for material in (soft, soft.elastic(instant=pace > 1.0))
     ]
     agree(*found)
+
+
+@pytest.mark.parametrize("sides", [1, 2])
+def test_what_two_bodies_feel_is_read_where_they_can_follow_it(sides: int) -> None:
+    """A pressure that runs evenly over the angles: at the nodes of one mesh, at the corners where two have to agree."""
+    operator = surface_operator(meshes.half_space(4.0, 20.0), 4, 0.3).operator
+    body, anything = 0.05, cast("Any", None)
+    places, pressure = Stacked(operator, (anything,) * sides, body).felt(
+        cast("Any", SimpleNamespace(pressure=2.0 - operator.points))
+    )
+    angles = operator.corners if sides == 2 else operator.nodes[: operator.trace.shape[1]]
+    np.testing.assert_allclose(places, body * np.sin(angles), rtol=1e-12)
+    np.testing.assert_allclose(pressure, 2.0 - angles, rtol=1e-8)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -215,6 +215,51 @@ class OnSpring(Marcher):
         return 0.0
 
 
+def on_spring(strike: Strike, numerics: Numerics, unit: float, scale: float, late: float = 0.0) -> OnSpring:
+    """A striker on k d^(3/2), of its units of length, m, and force, N, that begins ``late`` by a depth in them."""
+    encounter = SimpleNamespace(body=SimpleNamespace(rim=np.zeros(1, dtype=int)))
+    solid: Any = SimpleNamespace(unit=unit, lead=1.0, encounter=encounter)
+    law = FadingLaw(Hyperelastic(YEOH, 1.0, 2.0), strike.relaxation, False)
+    return OnSpring(strike, solid, law, numerics, scale, 1.5, late)
+
+
+@pytest.mark.parametrize("gravity", [0.5, 20.0])
+def test_steps_on_a_spring_under_gravity_err_as_their_square(
+    gravity: float, settings_of: Callable[..., Numerics], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Against m d'' = m g - k d^(3/2) by scipy's DOP853; a second march, cut off in contact, ends where it is told."""
+    monkeypatch.setattr(relaxing_impact, "contact_radius", lambda balance: 1.0)
+    unit, scale, mass, velocity = 0.02, 3.0, 0.4, 0.7
+    k = scale / unit**1.5
+
+    def moves(time: float, state: Array) -> list[float]:
+        force = k * max(state[0], 0.0) ** 1.5
+        return [state[1], gravity - force / mass, force]
+
+    def parts(time: float, state: Array) -> float:
+        return float(state[0]) if state[1] < 0.0 else 1.0
+
+    parts.terminal = True  # type: ignore[attr-defined]
+    exact = solve_ivp(moves, (0.0, 10.0), [0.0, velocity, 0.0], "DOP853", events=parts, rtol=1e-11, atol=1e-13)
+    duration, (_, leaving, impulse) = exact.t[-1], exact.y[:, -1]
+    errors = []
+    for steps in (60, 120):
+        strike = Strike(lambda r: r**2, mass, velocity, gravity, Relaxation(1.0), 10.0)
+        numerics = settings_of(strike, steps=steps).varied(contact_time=duration, peak_share=0.5)
+        found = Curve.of(on_spring(strike, numerics, unit, scale).march(), strike).quantities
+        cut = on_spring(replace(strike, end_time=0.6 * duration), numerics, unit, scale).march()
+        depth, _, passed = solve_ivp(
+            moves, (0.0, 0.6 * duration), [0.0, velocity, 0.0], "DOP853", rtol=1e-11, atol=1e-13
+        ).y[:, -1]
+        assert cut.time[-1] == pytest.approx(0.6 * duration, rel=1e-12)
+        told = {"duration": duration, "impulse": impulse, "restitution": -leaving / velocity}
+        off = [found[name] / value - 1.0 for name, value in told.items()]
+        errors.append([*off, cut.depth[-1] / depth - 1.0, cut.impulse[-1] / passed - 1.0])
+    few, many = np.abs(errors)
+    assert few.max() < 3e-3
+    assert np.all(many < np.maximum(0.3 * few, 1e-6))
+
+
 @pytest.mark.parametrize(("expected", "late"), [(0.7, 0.0), (1.0, 0.0), (1.4, 0.0), (1.0, 0.02)])
 def test_steps_on_a_spring_err_as_their_square_whatever_time_was_expected(
     expected: float, late: float, settings_of: Callable[..., Numerics], monkeypatch: pytest.MonkeyPatch
@@ -226,9 +271,6 @@ def test_steps_on_a_spring_err_as_their_square_whatever_time_was_expected(
     monkeypatch.setattr(relaxing_impact, "contact_radius", lambda balance: 1.0)
     unit, scale, mass, velocity = 0.02, 3.0, 0.4, 0.7
     strike = Strike(lambda r: r**2, mass, velocity, 0.0, Relaxation(1.0), 10.0)
-    solid: Any = SimpleNamespace(
-        unit=unit, lead=1.0, encounter=SimpleNamespace(body=SimpleNamespace(rim=np.zeros(1, dtype=int)))
-    )
     k, energy = scale / unit**1.5, 0.5 * mass * velocity**2
     depth = (2.5 * energy / k) ** 0.4
     true = {
@@ -237,10 +279,10 @@ def test_steps_on_a_spring_err_as_their_square_whatever_time_was_expected(
         "duration": 2.0 * depth / velocity * beta(0.4, 0.5) / 2.5 + late * depth / velocity,
         "impulse": 2.0 * mass * velocity,
     }
-    errors, law = [], FadingLaw(Hyperelastic(YEOH, 1.0, 2.0), strike.relaxation, False)
+    errors = []
     for steps in (60, 120):
         numerics = settings_of(strike, steps=steps).varied(contact_time=expected * true["duration"], peak_share=0.5)
-        march = OnSpring(strike, solid, law, numerics, scale, 1.5, late * depth / unit).march()
+        march = on_spring(strike, numerics, unit, scale, late * depth / unit).march()
         found = Curve.of(march, strike).quantities
         errors.append([found[name] / value - 1.0 for name, value in true.items()])
         assert abs(march.energy["residual"]) < 1e-3 * energy

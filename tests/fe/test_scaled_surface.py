@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,8 +17,9 @@ from fe_contact.bodies.pressing import EDGE_WINDOW
 from fe_contact.budget.plan import plan
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactSolution
-from fe_contact.steppers.scaled_surface import ScaledSurface
+from fe_contact.steppers.scaled_surface import ScaledSurface, _missed
 from fe_contact.targets import half_space
+from lumped import Relaxation
 from lumped.shapes import Parabola, Shape, Sphere
 
 corrected, penalty = ENFORCEMENTS.get("corrected"), ENFORCEMENTS.get("penalty")
@@ -194,3 +196,30 @@ def test_a_contact_of_a_few_points_on_a_half_plane_is_found_from_any_guess() -> 
         overlap[:few] -= 10 ** rng.uniform(-5, -2) * rng.random(few)
         problem = body.problem(overlap, 1e3 / points[few], yielding)
         assert corrected.enforce(problem, points < points[int(rng.integers(1, 40))]).converged
+
+
+@pytest.mark.parametrize("ratios", [(0.03, 0.4), (3.0, 20.0)])
+def test_what_a_straight_line_misses_is_the_faded_rest_of_how_a_gap_closes(ratios: tuple[float, ...]) -> None:
+    """As the power 3/2 of the time left: to the arrival, (r^2 - edge^2)/(radius^2 - edge^2) of the step, or beyond."""
+    length, edge, radius, radii = 0.7, 0.2, 0.35, np.linspace(0.0, 0.6, 61)
+    wide = np.where(radii > edge, 0.5 * radii**2 - 0.019, 0.0)
+    narrow = np.where(radii > radius, wide * (0.1 + 0.5 * radii), 0.0)
+    before, after = (
+        SimpleNamespace(depth=depth, memory=SimpleNamespace(strain=np.stack([gap + depth - 0.5 * radii**2, gap])))
+        for depth, gap in ((0.02, wide), (0.06, narrow))
+    )
+    relaxation = Relaxation(1.0, (1.0, 2.0), tuple(length / ratio for ratio in ratios))
+    stepper = SimpleNamespace(radii=radii, heights=0.5 * radii**2, strike=SimpleNamespace(relaxation=relaxation))
+    made_up: Any = (stepper, before, SimpleNamespace(state=after, length=length, radius=radius))
+    found = _missed(*made_up, edge)
+    shares = (np.arange(4000) + 0.5) / 4000.0
+    for place, first, last, missed in zip(radii, wide, narrow, found.T, strict=True):
+        if place <= edge:
+            assert not missed.any()
+            continue
+        reached = (place**2 - edge**2) / (radius**2 - edge**2)
+        arrival = reached if place < radius else 1.0 / (1.0 - (last / first) ** (2.0 / 3.0))
+        detour = first * np.maximum(1.0 - shares / arrival, 0.0) ** 1.5 - (first + shares * (last - first))
+        for ratio, one in zip(ratios, missed, strict=True):
+            exact = -ratio * np.mean(np.exp(-ratio * (1.0 - shares)) * detour)
+            assert one == pytest.approx(exact, abs=5e-3 * ratio * first), (place, ratio)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from lumped.errors import BadInput, TooManySteps
 from lumped.laws import correspondence, ting
 from lumped.scene.tables import LawChoice
 from lumped.shapes.power import PowerProfile
+from lumped.solvers.point.bodies import Bodies, PointLaw, Stage, State
 from lumped.targets.layer import Layer
 
 NAMES = [name for name in laws.available() if "k" in laws.get(name).keys]
@@ -133,3 +135,33 @@ def test_a_force_below_the_rounding_of_gravity_is_its_springs_at_the_turn(name: 
     turn = history.depth.argmax()
     assert history.depth[turn] == pytest.approx(0.5 * scene.velocity**2 / 1e5, rel=1e-9)
     assert history.force[turn] == pytest.approx(1e5 * history.depth[turn] ** 1.5, rel=1e-6)
+
+
+@pytest.mark.parametrize("gravity", [0.5, 3.0, 30.0])
+@pytest.mark.parametrize("speed", [0.02, 0.1, 1.0])
+def test_bodies_meet_again_at_the_surface_or_where_a_dashpot_no_longer_holds(gravity: float, speed: float) -> None:
+    """k d + c d' from a dent 1 mm deep: on a parabola of time, turned before the surface or after."""
+    dent, stiffness, damping = 1e-3, 2e3, 200.0
+    stages = list[Stage]()
+
+    def force(depth: float, rate: float, stage: Stage) -> float:
+        stages.append(stage)
+        return stiffness * depth + damping * rate
+
+    law: Any = SimpleNamespace(force=force)
+    last = State(dent, -speed, 0.2)
+    found = PointLaw.returned(law, Bodies(1.0, 2.0, gravity), last)
+    assert found is not None
+    time, state = found
+    square = speed**2 - 2.0 * gravity * dent
+    if square >= 0.0:
+        assert time == pytest.approx((speed + square**0.5) / gravity)
+        assert state[:3] == pytest.approx((0.0, square**0.5, 0.2), abs=1e-12)
+    else:
+        a, b, c = 0.5 * stiffness * gravity, damping * gravity - stiffness * speed, stiffness * dent - damping * speed
+        rises = max(np.roots([a, b, c]))
+        assert time == pytest.approx(rises, abs=1e-9)
+        assert state.rate == pytest.approx(gravity * rises - speed, abs=1e-7)
+        assert set(stages) == {Stage(False, dent, 2.0)}
+    assert PointLaw.returned(law, Bodies(1.0, 2.0, 0.0), last) is None
+    assert PointLaw.returned(law, Bodies(1.0, 2.0, -1.0), last) is None
