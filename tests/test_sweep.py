@@ -230,6 +230,14 @@ def asked(words: list[tuple[str, float, float]]) -> float:
     return max((total for _, _, total in words), default=0)
 
 
+def test_one_worker_says_a_word_after_every_batch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """And not after two of them, each of some seconds."""
+    events, answer = list[str](), study.answer
+    monkeypatch.setattr(study, "answer", lambda *batch: [events.append("asked"), answer(*batch)][1])
+    study.run(load(tables(axes={SPEED: [0.1, 0.2, 0.3]})), tmp_path, progress=lambda *_: events.append("told"))
+    assert events == ["asked", "told"] * 3
+
+
 def test_a_sweep_that_has_grown_asks_only_for_the_rest(tmp_path: Path) -> None:
     totals = []
     for count in (20, 50, 50):

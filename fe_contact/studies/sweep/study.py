@@ -202,14 +202,18 @@ def run(
 def _ask(
     sweep: Sweep, left: Iterator[Question], total: int, rows: Rows, executor: Executor, count: int, progress: Progress
 ) -> None:
-    """Ask so many workers for the ``total`` rows that are left, and keep them batch by batch."""
+    """Ask so many workers for the ``total`` rows that are left, and keep them batch by batch.
+
+    Two batches are asked of each, that none waits; of a single one one, so that there is a word after each.
+    """
+    ahead = 2 * count if count > 1 else 1
     most, done, failed, spent, begun = min(MOST, total // (SHARES * count)), 0, 0, 0.0, time.monotonic()
 
     def calls() -> Iterator[tuple[int, Callable[[], dict[str, Table]]]]:
         while batch := tuple(islice(left, max(1, min(most, int(BATCH * done / spent) if spent else 1)))):
             yield len(batch), partial(answer, sweep.base, sweep.tolerance, batch)
 
-    for answered, batch in answers(executor, calls(), 2 * count):
+    for answered, batch in answers(executor, calls(), ahead):
         rows.keep(batch)
         done += answered
         failed += sum(not row["converged"] for row in batch.values())

@@ -9,7 +9,6 @@ import math
 import textwrap
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -23,8 +22,7 @@ from lumped.materials import Material
 from lumped.materials.networks import NETWORKS
 from lumped.numbers import Array
 from lumped.scene.tables import LAWS, STRIKER_KEYS, TARGET_KEYS, Model, Motion
-from lumped.schema.keys import Key, Number, keys_of
-from lumped.schema.members import Folder
+from lumped.schema.keys import Described, Key, Number, keys_of
 from lumped.shapes import SHAPES
 from lumped.targets import TARGETS
 
@@ -73,21 +71,21 @@ def with_unit(key: str) -> str:
     """A dotted key of a scene with its unit, where it has one: that of all shapes, networks or laws alike."""
     part, _, name = key.rpartition(".")
     every = {
-        "striker": [STRIKER_KEYS, *_sets(SHAPES)],
-        "target": [TARGET_KEYS, *_sets(TARGETS)],
-        "striker.material": [keys_of(Material), *_sets(NETWORKS)],
-        "target.material": [keys_of(Material), *_sets(NETWORKS)],
+        "striker": [STRIKER_KEYS, *_sets(SHAPES.members)],
+        "target": [TARGET_KEYS, *_sets(TARGETS.members)],
+        "striker.material": [keys_of(Material), *_sets(NETWORKS.members)],
+        "target.material": [keys_of(Material), *_sets(NETWORKS.members)],
         "model": [keys_of(Model)],
         "motion": [keys_of(Motion)],
-        "law": _sets(LAWS),
+        "law": _sets(LAWS.members),
     }
     kinds = [keys[name].kind for keys in every.get(part, []) if name in keys]
     units = {kind.unit for kind in kinds if isinstance(kind, Number)} - {"", "1"}
     return f"{key}, {units.pop()}" if len(units) == 1 else key
 
 
-def _sets(members: Folder[Any]) -> list[Mapping[str, Key]]:
-    return [keys for one in members.members.values() for keys in one.sets]
+def _sets(members: Mapping[str, Described]) -> list[Mapping[str, Key]]:
+    return [keys for one in members.values() for keys in one.sets]
 
 
 def _states(axes: Axes, study: TransferStudy, key: str, rows: Sequence[TransferRow]) -> None:
