@@ -281,6 +281,7 @@ def test_a_first_step_that_reaches_no_point_of_the_mesh_is_no_force() -> None:
     assert np.all(np.isfinite(found.logarithm(np.array([0.0, course.unit * depths[0], found.depth[3]]))))
 
 
+@pytest.mark.tenth
 def test_a_ball_on_what_flows_from_the_touch_on_is_planned_as_by_a_constant_pressure() -> None:
     """Rigid but for plastic flow: energy = p pi a^4/(4 R c^2), p 2.6 to 3 yield strengths, c^2 1 to 1.5 by what piles
     up (Johnson, Contact Mechanics, 6.3).

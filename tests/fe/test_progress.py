@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -156,7 +157,11 @@ def test_a_log_on_a_full_disk_says_so_once_and_costs_no_result(empty: Path, caps
     ("study", "case", "marches"),
     [
         (pounding.study, load_pounding("published-release"), ("linear_spring", "no contact")),
-        (ptmd.study, load_ptmd("paper"), (ptmd.FULL, ptmd.PLAIN, ptmd.BARE, "finer steps")),
+        (
+            ptmd.study,
+            replace(load_ptmd("paper"), end_time=1.0, window=0.5),
+            (ptmd.FULL, ptmd.PLAIN, ptmd.BARE, "finer steps"),
+        ),
     ],
 )
 def test_a_motion_tells_how_far_it_is(study: Any, case: Any, marches: tuple[str, ...]) -> None:
