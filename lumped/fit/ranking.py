@@ -67,9 +67,8 @@ def rank(
 ) -> tuple[RankedFit, ...]:
     """Every law's fit by its own default parameters, the best criterion first, those without a fit last.
 
-    `fixed`: values held; `touch`: whether the first touch is sought too; `progress`: see
-    :func:`lumped.fit`. Raises BadInput or NotReached, that of the
-    first law, where none can be fitted.
+    `fixed`: values held; `touch`: whether the first touch is sought too; `progress`: see :func:`lumped.fit`. Raises
+    BadInput or NotReached, that of the first law, where none can be fitted.
     """
     held = dict(fixed or {})
     fitted, refused, failures = list[RankedFit](), list[RankedFit](), list[BadInput | NotReached]()

@@ -90,9 +90,8 @@ def search(
         reason = f"{measured.points} points for {len(space.free)} parameters; accepted: more points than parameters"
         raise BadInput(Fault("curve", "", reason))
     stiff = [name for name in STIFFNESSES if name in space.free] or list(space.free)
-    number = count(1)
-    heard = lambda: progress(f"impacts of {law}", next(number), 0)  # noqa: E731 - read in the next line
-    problem = FitProblem(space, measured, stiff[0] if peak else None, heard)
+    number, dependent = count(1), stiff[0] if peak else None
+    problem = FitProblem(space, measured, dependent, lambda: progress(f"impacts of {law}", next(number), 0))
     found = best(problem)
     certainty = certainty_of(problem, found.values, found.guess)
     fitted = space.scene_at(found.values)
