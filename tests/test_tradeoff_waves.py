@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -114,7 +115,7 @@ def test_exact_waves_are_known_of_elastic_rods_and_bars_alone() -> None:
 def test_the_default_keeps_its_promise_and_is_near_the_front(found: Tradeoff) -> None:
     (default,) = [point for point in found.points if point.default_for is not None]
     assert default.error <= (default.bar or 0.0) <= default.default_for == 1e-3
-    assert "on the front" in found.verdict[1]
+    assert re.search("on the front|within 1.5 of the front", found.verdict[1]), "processor time scatters by less"
     assert known_to(found.points) == study.TIGHTEST
     assert found.verdict[0].startswith("use rod_waves (")
 

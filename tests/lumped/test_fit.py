@@ -266,7 +266,7 @@ def test_parameters_that_do_the_same_have_no_interval() -> None:
 def test_a_force_beyond_every_material_is_searched_within_its_range() -> None:
     """The first guess lies as far beyond the range as a search reaches."""
     curve = Curve(np.array([0.0, 10.0, 20.0]), np.array([0.0, 1e14, 0.0]))
-    with pytest.raises(NotReached, match=r"no search of .* converged"):
+    with pytest.raises(NotReached, match="farther from the curve than no force at all"):
         fit(curve, "mdr", Scene.load("steel-ball"))
 
 
