@@ -203,11 +203,8 @@ def finite_strain(geometry: Geometry, peak: Peak, struck: bool) -> LedgerEntry:
 
 
 def of_dent(scene: Scene, peak: Peak) -> Peak:
-    """With the depth of the dent in a rod's end, which goes as a^(1/(n - 1)), in place of the striker's way."""
-    shape, stiffness = scene.profile, scene.contact_modulus.spring
-    known = shape.hertz_impact(stiffness, scene.reduced_mass, scene.velocity)
-    share = peak.contact_radius / known.contact_radius
-    return replace(peak, depth=known.depth * share ** (1.0 / (shape.exponent_of_force - 1.0)))
+    """With the depth of the dent in a rod's end, a half-space's at that contact radius, not the striker's way."""
+    return replace(peak, depth=float(scene.profile.load_curve.depth(peak.contact_radius)))
 
 
 def rod_end(scene: Scene, peak: Peak) -> LedgerEntry:

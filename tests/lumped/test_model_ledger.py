@@ -14,7 +14,7 @@ from scipy.integrate import quad
 from lumped import LedgerEntry, Material, Model, Relaxation, Scene, Sphere, laws, simulate
 from lumped.errors import BadInput
 from lumped.materials.radiation import SINE_PULSE, line_coefficient, pulse_energy, radiation_coefficient
-from lumped.result.model_ledger import Peak, finite_strain, ledger_at_rest, model_ledger
+from lumped.result.model_ledger import Peak, finite_strain, ledger_at_rest, model_ledger, of_dent
 from lumped.result.result import ABOVE, NO_KEY, OPEN, UNKNOWN, WITHIN, good_to, sufficient
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
@@ -292,3 +292,27 @@ def test_a_long_rod_is_in_plane_strain() -> None:
     assert longer == pytest.approx([0.45**2 * 0.003 / 0.03])
     assert short == pytest.approx([0.45**2])
     assert estimate(Scene.load("polymer-sphere")) == []
+
+
+@pytest.mark.parametrize(
+    "striker",
+    [
+        {"shape": "sphere", "radius": 0.01},
+        {"shape": "sphere_cone", "radius": 1e-3, "angle": 20.0},
+        {"shape": "rounded_punch", "flat_radius": 1e-3, "edge_radius": 6e-3},
+    ],
+)
+def test_a_rods_dent_is_as_deep_as_its_contact_is_wide(striker: dict[str, object]) -> None:
+    """Also of what is no power of the radius; and the ledger tells it."""
+    rod = {"shape": "rod", "area": 3e-4, "length": 0.5, "end": "free"}
+    material = {"law": "elastic", "E": 2e11, "nu": 0.3, "density": 7850.0}
+    scene = Scene.from_dict(
+        {
+            "striker": striker | {"mass": 0.05, "velocity": 0.5},
+            "target": rod | {"material": material},
+            "model": {"inertia": True},
+        }
+    )
+    peak = of_dent(scene, Peak(100.0, 1e-2, 1.5e-3, 1e-4))
+    assert float(scene.profile.load_curve.contact_radius(peak.depth)) == pytest.approx(1.5e-3, rel=1e-9)
+    assert {"finite strain", "dent of the rod's end"} <= {entry.effect for entry in model_ledger(scene, peak)}
