@@ -21,7 +21,7 @@ from fe_contact.budget.refine import Finer, dominant, refine
 from fe_contact.budget.variation import factor
 from fe_contact.errors import faults_of
 from fe_contact.plastic import indent as plastic
-from fe_contact.progress import Progress, silent
+from fe_contact.progress import Count, Counted, Progress, silent, uncounted
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics, check_kind
 from fe_contact.solids import pressing as solids
 from fe_contact.targets.base import TARGETS
@@ -118,9 +118,12 @@ class Indenting:
 
     def certified(self, numerics: Numerics) -> PressedBudget:
         """The forces and what each setting changes of them. Raises NotReached where contact does not settle."""
-        self.progress(f"{numerics.elements_per_contact:g} elements along the contact radius")
-        base = press(self.elastic, self.depth, self.radii, numerics, self._softer(numerics))
-        errors = {cause: np.full(self.depth.size, error) for cause, error in self._budget(base, numerics).items()}
+        message = f"{numerics.elements_per_contact:g} elements along the contact radius"
+        self.progress(message)
+        counted = Count(self.progress, message, 2.0 * self.depth.size)
+        base = press(self.elastic, self.depth, self.radii, numerics, self._softer(numerics), counted)
+        budget = self._budget(base, numerics, counted)
+        errors = {cause: np.full(self.depth.size, error) for cause, error in budget.items()}
         return PressedBudget(base, errors, numerics)
 
     def finer(self, found: PressedBudget) -> Finer:
@@ -130,8 +133,8 @@ class Indenting:
             return Finer(None)
         return Finer(dominant(errors, found.numerics, self.pinned))
 
-    def _budget(self, base: PressedDepths, numerics: Numerics) -> dict[str, float]:
-        """Relative error of the force by cause.
+    def _budget(self, base: PressedDepths, numerics: Numerics, counted: Counted) -> dict[str, float]:
+        """Relative error of the force by cause; ``counted`` is told of every depth.
 
         The far field is varied on the other mesh, which as a rule is the cheaper one, unless the body ends before; the
         penalty costs no mesh, and in large strains a few depths tell of it as they are reached.
@@ -140,9 +143,9 @@ class Indenting:
         far, farther = other_setting(other, "far_radius")
         penalty, stiffer = other_setting(numerics, "penalty")
         many, few = self._telling(FEWEST_LARGE), self._telling(FEWEST_SOFT)
-        on_soft = self._press(few, penalty) if base.softer is None else base.softer
-        on_other = self._press(many, other)
-        on_far = on_other if on_other.ends else self._press(many, far)
+        on_soft = self._press(few, penalty, counted) if base.softer is None else base.softer
+        on_other = self._press(many, other, counted)
+        on_far = on_other if on_other.ends else self._press(many, far, counted)
         by_penalty = factor(LEAST_ORDER["penalty"], stiffer)
         return {
             "mesh": _error(by_mesh, base.at(many), on_other),
@@ -156,8 +159,8 @@ class Indenting:
         other = other_setting(numerics, "penalty")[0].penalty
         return solids.Softer(self._telling(FEWEST_SOFT), other) if self.elastic.model.finite else None
 
-    def _press(self, told: Indices, numerics: Numerics) -> PressedDepths:
-        return press(self.elastic, self.depth[told], self.radii[told], numerics)
+    def _press(self, told: Indices, numerics: Numerics, counted: Counted) -> PressedDepths:
+        return press(self.elastic, self.depth[told], self.radii[told], numerics, counted=counted)
 
     def _telling(self, few: int) -> Indices:
         """Depths that tell of a setting: all, but where each is dear a few from the smallest to the largest."""
@@ -204,19 +207,25 @@ def settings(given: Given, shape: Shape, large: bool = False) -> Numerics:
 
 
 def press(
-    indenter: Indenter, depth: Array, radii: Array, numerics: Numerics, softer: solids.Softer | None = None
+    indenter: Indenter,
+    depth: Array,
+    radii: Array,
+    numerics: Numerics,
+    softer: solids.Softer | None = None,
+    counted: Counted = uncounted,
 ) -> PressedDepths:
     """Every depth, m, with one setting of everything, from the largest to the smallest; ``radii`` to begin with, m.
 
-    ``softer``: of large strains, depths that another penalty is tried at.
+    ``softer``: of large strains, depths that another penalty is tried at; ``counted`` is told of each that is pressed.
     """
     if indenter.model.finite:
-        return solids.press(indenter, depth, radii, numerics, softer)
+        return solids.press(indenter, depth, radii, numerics, softer, counted)
     body: Still = TARGETS.get(indenter.target.name).still(indenter, radii, numerics)
     growth, found = 1.0, dict[int, Pressed]()
     for i in np.argsort(-depth).tolist():
         found[i] = body.press(float(depth[i]), growth * float(radii[i]))
         growth = found[i].contact_radius / float(radii[i])
+        counted(1.0)
     pressed = [found[i] for i in sorted(found)]
     work = {
         "degrees_of_freedom": body.degrees_of_freedom,

@@ -18,6 +18,7 @@ from fe_contact.assembly.forms import Array, Indices
 from fe_contact.assembly.operators import ElasticBody, SolidMesh, moduli
 from fe_contact.bodies.pressing import PressedDepths, half_width
 from fe_contact.errors import ContactTooWide
+from fe_contact.progress import Counted, uncounted
 from fe_contact.settings import Numerics
 from fe_contact.solids.base import State
 from fe_contact.solids.block import press as pressed_alike
@@ -159,9 +160,17 @@ class Reached(NamedTuple):
 
 
 def press(
-    indenter: Indenter, depth: Array, radii: Array, numerics: Numerics, softer: Softer | None = None
+    indenter: Indenter,
+    depth: Array,
+    radii: Array,
+    numerics: Numerics,
+    softer: Softer | None = None,
+    counted: Counted = uncounted,
 ) -> PressedDepths:
-    """Every depth, m, from the smallest on; ``radii`` of the contacts expected, m. Raises NotReached."""
+    """Every depth, m, from the smallest on; ``radii`` of the contacts expected, m; ``counted`` is told of each.
+
+    Raises NotReached.
+    """
     if isinstance(indenter.shape, Block) and indenter.shape.uniform:
         return pressed_alike(indenter, indenter.shape, depth)
     found, again, widening = dict[int, Reached](), dict[int, Reached](), _widening(depth, radii)
@@ -171,6 +180,7 @@ def press(
             stiffness = numerics.penalty * solid.unit / float(radii[i])
             reached = solid.advanced(reached, float(depth[i]), stiffness, widening)
             found[i] = solid.pressed(reached)
+            counted(1.0)
             if softer is not None and i in softer.chosen:
                 again[i] = solid.pressed(_pressed_by(softer.penalty / numerics.penalty * stiffness, reached))
     told = _told(solid, found)
