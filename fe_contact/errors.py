@@ -71,7 +71,7 @@ class TooManySteps(NotReached):
         super().__init__(f"{steps} steps reached only t = {time:.6g} s; cure: {cure}")
 
 
-FINER_STEPS = "an earlier motion.end_time, or more numerics.steps"  # cure where a contact has so many of a number
+FINER_STEPS = "an earlier motion.end_time, or more numerics.steps"  # cure where they set how many a contact may take
 
 
 class IndentationNotSettled(NotReached):

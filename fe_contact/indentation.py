@@ -119,8 +119,7 @@ class Indenting:
     def certified(self, numerics: Numerics) -> PressedBudget:
         """The forces and what each setting changes of them. Raises NotReached where contact does not settle."""
         message = f"{numerics.elements_per_contact:g} elements along the contact radius"
-        self.progress(message)
-        counted = Count(self.progress, message, 2.0 * self.depth.size)
+        counted = Count.of(self.progress, message, 2.0 * self.depth.size)
         base = press(self.elastic, self.depth, self.radii, numerics, self._softer(numerics), counted)
         budget = self._budget(base, numerics, counted)
         errors = {cause: np.full(self.depth.size, error) for cause, error in budget.items()}

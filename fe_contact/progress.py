@@ -10,26 +10,16 @@ from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Protocol, TextIO
+from typing import TextIO
+
+from lumped.progress import Progress as Progress
+from lumped.progress import silent as silent
 
 OFTEN = 0.2  # s between two words on a terminal, as fast as anybody reads
 SELDOM = 1.0  # s between two lines of a log
 
 
 Counted = Callable[[float], None]  # told that so many parts of a work are done
-
-
-class Progress(Protocol):
-    """Told what is being done and, where it is known, how much of the ``total`` of it is ``done``, in any unit.
-
-    It may be told as often as it is done: a word more costs a look at the clock.
-    """
-
-    def __call__(self, message: str, done: float = 0, total: float = 0) -> None: ...
-
-
-def silent(message: str, done: float = 0, total: float = 0) -> None:
-    """Nobody listens."""
 
 
 def to_all(listeners: Sequence[Progress]) -> Progress:
@@ -50,6 +40,12 @@ class Count:
     message: str
     total: float
     done: float = 0.0
+
+    @classmethod
+    def of(cls, progress: Progress, message: str, total: float) -> Count:
+        """Of a work that begins, which is told at once."""
+        progress(message)
+        return cls(progress, message, total)
 
     def __call__(self, parts: float = 1.0) -> None:
         """So many more are done."""

@@ -309,8 +309,7 @@ class RelaxingStrikes:
 
     def _run(self, numerics: Numerics) -> March:
         message = f"{numerics.elements_per_contact:.3g} elements along the contact radius, {numerics.steps} steps"
-        self.progress(message)
-        march = Marcher.of(self.scene, numerics).march(Count(self.progress, message, numerics.steps))
+        march = Marcher.of(self.scene, numerics).march(Count.of(self.progress, message, numerics.steps))
         if not np.all(np.isfinite(march.radius)):
             raise MemoryTooSmall(numerics.contact_radius)
         return march

@@ -142,7 +142,7 @@ def test_no_files_import_each_other_in_a_circle(package: str) -> None:
 
 ROOMS = {  # lowest first
     "lumped": (
-        "errors numbers schema load_curves materials shapes targets scene result solvers indentation laws "
+        "errors numbers progress schema load_curves materials shapes targets scene result solvers indentation laws "
         "restitution fit identify pounding ptmd paper __init__"
     ),
     "fe_contact": (

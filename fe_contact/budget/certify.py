@@ -103,9 +103,7 @@ def certify(
     Up to so many ``impacts``: the budget is that of the first, those of the ``later`` ones stand in it.
     """
     message = f"{numerics.steps} steps, {numerics.elements_per_contact:g} elements along the contact radius"
-    expected = MARCHES * impacts * numerics.steps
-    progress(message)
-    runs = Runs(strike, geometry, impacts, Count(progress, message, expected))
+    runs = Runs(strike, geometry, impacts, Count.of(progress, message, MARCHES * impacts * numerics.steps))
     numerics = runs.placed(numerics, numerics.steps // 4 if numerics.steps >= LEAST_HALVED else numerics.steps)
     followed = runs.follow(numerics)
     judged = [_judged(runs, number, numerics, impacts == 1) for number in range(len(followed.contacts))]

@@ -99,8 +99,7 @@ def _rank(asked: FitQuestion) -> int:
     from lumped.fit.ranking import RECORD, rank, write_ranking
 
     with asked.addressed():
-        free_touch = asked.free is not None
-        ranked = rank(asked.curve, asked.scene, asked.fixed, free_touch, asked.run.progress)
+        ranked = rank(asked.curve, asked.scene, asked.fixed, asked.free is not None, asked.run.progress)
     lines = [_ranking_line(i, one) for i, one in enumerate(ranked, start=1)]
     write, plot = partial(write_ranking, ranked, asked.curve), partial(plot_ranking, ranked, asked.curve)
     return asked.run.finish(RECORD, lines, write, plot, "law by law")

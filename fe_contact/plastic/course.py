@@ -172,7 +172,7 @@ class Course:
             deepest=deepest,
         )
 
-    def begun_at(self, depth: float) -> Course:
+    def starting_at(self, depth: float) -> Course:
         """With no step before a depth, m: what flows there forgets how it began."""
         return replace(self, first=max(self.first, depth), firm=max(self.firm, depth))
 
@@ -288,12 +288,11 @@ class PlasticLoading:
         return cls(course, numerics, presser, [])
 
     @classmethod
-    def told(cls, course: Course, numerics: Numerics, cut: bool, progress: Progress) -> PlasticLoading:
+    def with_progress(cls, course: Course, numerics: Numerics, cut: bool, progress: Progress) -> PlasticLoading:
         """The same; ``progress`` hears of every contact problem, two or more a step."""
         message = f"{numerics.elements_per_contact:.3g} elements along the contact radius, {numerics.steps} steps"
-        progress(message)
         problems = 2 * course.depths(numerics.steps, BEYOND * course.deepest).size
-        return cls.of(course, numerics, cut, counted=Count(progress, message, problems))
+        return cls.of(course, numerics, cut, counted=Count.of(progress, message, problems))
 
     def to(self, end: float) -> None:
         """On to a depth, m, whatever was reached. Raises PlasticFlowLost, PlasticFlowSlow, MemoryTooSmall."""

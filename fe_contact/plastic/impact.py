@@ -264,7 +264,7 @@ def pilot(scene: Scene) -> Pilot:
     """By a coarse mesh and few steps. Raises NotReached."""
     energy = 0.5 * scene.reduced_mass * scene.velocity**2
     deepest = _at_most(scene, energy)
-    course = Course.of(scene, deepest, deepest).begun_at(PILOT_FIRST * deepest)
+    course = Course.of(scene, deepest, deepest).starting_at(PILOT_FIRST * deepest)
     loading = PlasticLoading.of(course, settings(PILOT, course), most=MOST_PILOT)
     loading.to(BEYOND * deepest)
     power = released_power(course)
@@ -393,7 +393,7 @@ class Runner:
 
     def pressed(self, numerics: Numerics, cut: bool) -> tuple[PlasticLoading, Answered, list[Station]]:
         """The same: loading, what is known by it, and places of the release."""
-        loading = PlasticLoading.told(self.course, numerics, cut, self.progress)
+        loading = PlasticLoading.with_progress(self.course, numerics, cut, self.progress)
         loading.to(BEYOND * self.course.deepest)
         known = Answered.of(loading)
         deepest = self.motion(known).deepest

@@ -106,7 +106,7 @@ class YieldingWay:
         return Finer(finer(shares, found.numerics, self.pinned))
 
     def _run(self, course: Course, numerics: Numerics, cut: bool) -> PlasticLoading:
-        loading = PlasticLoading.told(course, numerics, cut, self.progress)
+        loading = PlasticLoading.with_progress(course, numerics, cut, self.progress)
         loading.to(BEYOND * self.course.deepest)
         return loading
 

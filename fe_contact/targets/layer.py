@@ -106,7 +106,7 @@ def _mesh(elements: float, smallest: float | None, thickness: float, width: floa
 def matrix(basis: Basis, plane: bool, bulk: float, shear: float) -> Matrix:
     """Stiffness of the layer, and of what lies beyond its side: one that slides gives way to the end of the world.
 
-    At the side of a bonded one nothing is left to feel it.
+    A bonded one is held there, or has died away.
     """
     law = elastic(bulk, shear)
     if plane:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from lumped.fit.record import RECORD as RECORD
 from lumped.fit.record import Estimate as Estimate
 from lumped.fit.record import Fit as Fit
 from lumped.fit.record import write_failure as write_failure
+from lumped.progress import Progress, silent
 
 if TYPE_CHECKING:
     from lumped.fit.space import Bounds
@@ -25,7 +26,7 @@ def fit(
     fixed: Mapping[str, float] | None = None,
     bounds: Bounds | None = None,
     peak: bool = False,
-    progress: Callable[[str, float, float], None] = lambda message, done, total: None,
+    progress: Progress = silent,
 ) -> Fit:
     """Fit the law of this name to a force over time; mass, velocity and geometry are the scene's.
 

@@ -44,13 +44,13 @@ SOLID = ("E0", "R1", "R2")
 class FitProblem:
     """`dependent` is the free parameter that holds the peak, "(26)"; None: least squares in all of them.
 
-    `heard` is called before every impact.
+    `on_impact` is called before every impact.
     """
 
     space: Space
     measured: Measured
     dependent: str | None
-    heard: Callable[[], None] = lambda: None
+    on_impact: Callable[[], None] = lambda: None
 
     @property
     def searched(self) -> tuple[str, ...]:
@@ -59,7 +59,7 @@ class FitProblem:
 
     def candidate(self, values: Values) -> Candidate:
         """The impact at these values of all free parameters. Raises BadInput, NotReached."""
-        self.heard()
+        self.on_impact()
         return candidate(self.space.law, self.space.scene_at(values))
 
     def error(self, values: Values) -> Array:

@@ -14,9 +14,10 @@ from lumped.errors import BadInput, NotReached
 from lumped.fit.measured import Measured
 from lumped.fit.noise import Whiteness, whiteness
 from lumped.fit.record import Fit
-from lumped.fit.search import Progress, search
+from lumped.fit.search import search
 from lumped.fit.space import TOUCH, default_free
 from lumped.numbers import Array
+from lumped.progress import Progress, silent
 from lumped.result.score import Curve
 from lumped.scene.scene import Scene
 from lumped.schema import Table
@@ -63,7 +64,7 @@ def rank(
     scene: Scene,
     fixed: Mapping[str, float] | None = None,
     touch: bool = False,
-    progress: Progress = lambda message, done, total: None,
+    progress: Progress = silent,
 ) -> tuple[RankedFit, ...]:
     """Every law's fit by its own default parameters, the best criterion first, those without a fit last.
 

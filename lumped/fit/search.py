@@ -6,7 +6,7 @@ start, in the logarithms of the parameters.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import count, product
@@ -37,6 +37,7 @@ from lumped.laws._force_law import between_masses, bodies_of
 from lumped.laws._parameters import Parameters
 from lumped.laws._power_law import spring_contact_time, spring_of_peak
 from lumped.laws.base import check_mass, simulate
+from lumped.progress import Progress, silent
 from lumped.result.history import History
 from lumped.result.score import Curve, normalized_error
 from lumped.scene.scene import Scene
@@ -60,7 +61,6 @@ RATIOS, TIMES = (0.3, 2.0), (0.1, 1.0, 10.0)
 # Of an elastic modulus: where an echo lets the force jump, a search finds its time from one side only.
 ASIDE = (1.0, 0.99, 1.01)
 Values = dict[str, float]
-Progress = Callable[[str, float, float], None]  # told what is computed, how much of it is done, and will be
 Array = NDArray[np.float64]
 # Of the differences: far above what an impact's integration errs by, and the search needs no better slopes.
 DIFFERENCE = 1e-4
@@ -78,7 +78,7 @@ def search(
     fixed: Mapping[str, float] | None = None,
     bounds: Bounds | None = None,
     peak: bool = False,
-    progress: Progress = lambda message, done, total: None,
+    progress: Progress = silent,
 ) -> Fit:
     """See :func:`lumped.fit`."""
     check_mass(scene)
@@ -129,15 +129,14 @@ def delayed(history: History, touch: float) -> History:
 def best(problem: FitProblem) -> Found:
     """The nearest of the searches from the best starts. Raises NotReached, BadInput."""
     begun = sorted(_begun(problem), key=lambda found: found.norm)
-    nothing = float(np.linalg.norm(problem.of_nothing))
-    near, far = list[Found](), list[Found]()
+    nothing, near, far = np.linalg.norm(problem.of_nothing), list[Found](), list[Found]()
     for start in begun:
         found = Descent(problem, start).end()
         if found is None:
             continue
-        (near if found.norm < nothing else far).append(found)
-        noise = found in near and not problem.measured.systematic(found.error)
-        if noise or FOLLOWED in (len(near), len(far)):
+        ended = near if found.norm < nothing else far
+        ended.append(found)
+        if len(ended) == FOLLOWED or (ended is near and not problem.measured.systematic(found.error)):
             break
     if not near:
         raise NotReached(_no_end(", ".join(problem.space.free), len(begun), bool(far)))

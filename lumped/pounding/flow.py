@@ -23,7 +23,7 @@ LAST = 1e-17  # rounding: of the first integral of a force, in its last one that
 ROUNDING = 1e-13  # rounding: of the displacements behind a depth: what is as near to zero is zero
 FAINTEST = 1e-6  # of the fastest storey: what touches more slowly counts as so fast, for steps and laws
 TERMS = 18  # rounding: 1/18! is below 2e-16
-SEEN = 30.0  # look: rows in the longest period, so that straight lines between them miss half a per cent of it
+ROWS_A_PERIOD = 30.0  # look: of the longest one, so that straight lines between them miss half a per cent of it
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +69,7 @@ def longest_row(frames: LinearBodies, ground: GroundMotion) -> float:
     damping = float((np.abs(frames.damping).sum(axis=1) / frames.mass).max()) + ground.fastest
     root = damping + sqrt(damping**2 + 4.0 * stiffness)
     shares = frames.stiffness / np.sqrt(np.outer(frames.mass, frames.mass))
-    slowest = sqrt(max(float(np.linalg.eigvalsh(shares)[0]), 0.0)) * SEEN / (2.0 * pi)
+    slowest = sqrt(max(float(np.linalg.eigvalsh(shares)[0]), 0.0)) * ROWS_A_PERIOD / (2.0 * pi)
     return 1.0 / max(0.5 * root, slowest) if root > 0.0 else np.inf
 
 

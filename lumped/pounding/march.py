@@ -25,10 +25,10 @@ MOST_ROWS = 100_000  # work: a minute and half a gigabyte
 MOST_STEPS = 3000  # work: of one row, more is no motion but chatter
 MOST_AHEAD = 16  # work: rows of one flight
 
-Heard = Callable[[float], None]  # told the time, s, that a motion has come to
+OnTime = Callable[[float], None]  # called with the time, s, that a motion has come to
 
 
-def unheard(time: float) -> None:
+def ignore(time: float) -> None:
     """Nobody waits for it."""
 
 
@@ -84,7 +84,7 @@ class FrameMarch:
     rules: Rules
     ground: GroundMotion
 
-    def run(self, times: Array, listener: Listener, gaps: Sequence[GapState] = (), heard: Heard = unheard) -> None:
+    def run(self, times: Array, listener: Listener, gaps: Sequence[GapState] = (), on_time: OnTime = ignore) -> None:
         """From the start through all rows; `gaps`: what they do there, apart by default. Raises NotReached."""
         frames = self.rules.flow.frames
         depths = frames.rows @ frames.start[: self.rules.flow.size] - frames.distances
@@ -94,7 +94,7 @@ class FrameMarch:
         i, ahead = 1, 1
         with np.errstate(all="ignore"):
             while i < times.size:
-                heard(at.time)
+                on_time(at.time)
                 flight = self._flight(at, times[i - 1 : i + ahead])
                 if flight is None:
                     at, length = self._row(at, float(times[i]), length, listener)

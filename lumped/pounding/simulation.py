@@ -18,7 +18,7 @@ from lumped.pounding.flow import TERMS, FrameFlow
 from lumped.pounding.frames import PoundingFrames
 from lumped.pounding.gaps import FrameStep, GapState, Mode
 from lumped.pounding.ground import STILL, GroundMotion
-from lumped.pounding.march import FrameMarch, FramesFlight, Heard, rows, unheard
+from lumped.pounding.march import FrameMarch, FramesFlight, OnTime, ignore, rows
 from lumped.pounding.result import FrameContact, FramesEnergy, FramesMotion, FramesResult, StoreyPeaks
 from lumped.pounding.trial import NODES, FramesAt, Rules
 from lumped.solvers.point.bodies import TINY, State
@@ -33,11 +33,11 @@ def simulate(
     ground: GroundMotion = STILL,
     end_time: float = 20.0,
     tolerance: float = 1e-10,
-    heard: Heard = unheard,
+    on_time: OnTime = ignore,
 ) -> FramesResult:
     """The frames from their start to `end_time`, s, a law for each gap.
 
-    `tolerance`: error of a relative speed in one step of a contact, over the speed at touch; `heard` is told how
+    `tolerance`: error of a relative speed in one step of a contact, over the speed at touch; `on_time` is told how
     far the motion is, s. Raises BadInput, and NotReached where contacts do not end.
     """
     if len(laws) != len(frames.gaps):
@@ -45,7 +45,7 @@ def simulate(
     times, longest = rows(frames.bodies, ground, end_time)
     march = FrameMarch(Rules(FrameFlow(frames.bodies, longest), laws, tolerance), ground)
     account = Account(frames, march)
-    march.run(times, account, heard=heard)
+    march.run(times, account, on_time=on_time)
     return account.result()
 
 

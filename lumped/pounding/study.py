@@ -5,9 +5,8 @@ The coarser march takes longer steps and, where slabs have waves, half their mod
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 from lumped.errors import addressed
 from lumped.laws._force_law import ForceLaw
@@ -15,6 +14,7 @@ from lumped.pounding.case_file import PoundingCase
 from lumped.pounding.frames import PoundingFrames
 from lumped.pounding.result import FramesResult
 from lumped.pounding.simulation import simulate
+from lumped.progress import Progress, silent
 
 NO_CONTACT = "no contact"  # the variant whose structures pass through each other
 COARSE, FINE = 1e-6, 1e-8  # step tolerances of the two marches
@@ -75,7 +75,7 @@ class PoundStudy:
 def study(
     case: PoundingCase,
     names: Sequence[str] = (),
-    progress: Callable[[str, float, float], None] = lambda message, done, total: None,
+    progress: Progress = silent,
     calibrated: Mapping[str, tuple[ForceLaw, ...]] | None = None,
 ) -> PoundStudy:
     """The case under its own law and these others. Raises BadInput, before any work, and NotReached.
@@ -89,19 +89,20 @@ def study(
     motions = {}
     with addressed(case.source, {"motion": "motion"}):
         for name, one in laws.items():
-            motions[name] = pounding(case, one, partial(progress, name))
+            motions[name] = pounding(case, one, name, progress)
         free = PoundingFrames(case.frames.left, case.frames.right)
         apart = simulate(
-            free, (), case.ground, case.end_time, heard=lambda time: progress(NO_CONTACT, time, case.end_time)
+            free, (), case.ground, case.end_time, on_time=lambda time: progress(NO_CONTACT, time, case.end_time)
         )
         return PoundStudy(case, motions, apart)
 
 
 def pounding(
-    case: PoundingCase, laws: tuple[ForceLaw, ...], told: Callable[[float, float], None] = lambda done, total: None
+    case: PoundingCase, laws: tuple[ForceLaw, ...], message: str = "", progress: Progress = silent
 ) -> Pounding:
-    """One motion with its error bars; `told` how far its marches are together, and will go, s. Raises NotReached.
+    """One motion with its error bars. Raises NotReached.
 
+    `progress` is told by the `message` how far its marches are together, and will go, s.
     Modes meet a motion by chance at times: half of what the next halving changes is the least that waves are told by.
     """
     halved = (1, 2) if case.frames.slabs else (0,)
@@ -110,7 +111,12 @@ def pounding(
     def marched(number: int) -> FramesResult:
         (frames, tolerance), end = ways[number], case.end_time
         return simulate(
-            frames, laws, case.ground, end, tolerance, lambda time: told(number * end + time, len(ways) * end)
+            frames,
+            laws,
+            case.ground,
+            end,
+            tolerance,
+            lambda time: progress(message, number * end + time, len(ways) * end),
         )
 
     fine = marched(0)

@@ -18,7 +18,7 @@ from lumped.numbers import Array
 from lumped.pounding.flow import FrameFlow, LinearBodies
 from lumped.pounding.gaps import OPEN, FrameStep, GapState, Mode, pressed
 from lumped.pounding.ground import STILL
-from lumped.pounding.march import FrameMarch, FramesFlight, Heard, rows, unheard
+from lumped.pounding.march import FrameMarch, FramesFlight, OnTime, ignore, rows
 from lumped.pounding.simulation import Peaks
 from lumped.pounding.trial import NODES, FramesAt, Rules
 from lumped.ptmd.result import Energy, Measures, PtmdContact, PtmdMotion, PtmdResult
@@ -41,11 +41,11 @@ def simulate(
     end_time: float = 20.0,
     window: float = 5.0,
     tolerance: float = STEP_TOLERANCE,
-    heard: Heard = unheard,
+    on_time: OnTime = ignore,
 ) -> PtmdResult:
     """Vibration from `start` to `end_time`, s; root mean squares over the first `window` seconds.
 
-    `tolerance`: error of a relative speed in one step of a contact, over the speed at touch; `heard` is told how
+    `tolerance`: error of a relative speed in one step of a contact, over the speed at touch; `on_time` is told how
     far the motion is, s. Raises BadInput and NotReached.
     """
     _, faults = read_table("simulate", "", {"end_time": end_time, "window": window}, TIME_KEYS)
@@ -58,7 +58,7 @@ def simulate(
     laws = [law_of(system.ring, bodies)] * len(SIDES) if system.ring else []
     track = PtmdTrack(system, bodies, laws)
     march = FrameMarch(Rules(FrameFlow(bodies, longest), laws, tolerance), STILL)
-    march.run(times, track, track.first_gaps, heard)
+    march.run(times, track, track.first_gaps, on_time)
     return PtmdResult(system, start, track.motion(), track.all_contacts, track.energy(), track.measures(window))
 
 

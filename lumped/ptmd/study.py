@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from lumped.errors import addressed
+from lumped.progress import Progress, silent
 from lumped.ptmd.case_file import Case
 from lumped.ptmd.free_vibration import STEP_TOLERANCE, simulate
 from lumped.ptmd.result import PtmdResult
@@ -62,7 +62,7 @@ class PtmdStudy:
         return sufficient(self.ledger, SMALL)
 
 
-def study(case: Case, progress: Callable[[str, float, float], None] = lambda message, done, total: None) -> PtmdStudy:
+def study(case: Case, progress: Progress = silent) -> PtmdStudy:
     """Simulate the case twice and its simpler variants once. Raises BadInput and NotReached.
 
     `progress` is told what is simulated, how far that is, and how far it will go, s.

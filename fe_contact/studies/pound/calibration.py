@@ -162,6 +162,6 @@ def calibrated_study(
     """
     calibration = PoundCalibration.of(case, names, by, method, progress)
     found = study(case, names, progress, calibration.laws)
-    progress("bar of the reference")
-    other, first = pounding(case, calibration.farther()).result.measures(), found.main.measures()
+    other = pounding(case, calibration.farther(), "bar of the reference", progress).result.measures()
+    first = found.main.measures()
     return CalibratedStudy(calibration, found, {name: abs(value - first[name]) for name, value in other.items()})

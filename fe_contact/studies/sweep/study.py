@@ -204,7 +204,7 @@ def _ask(
 ) -> None:
     """Ask so many workers for the ``total`` rows that are left, and keep them batch by batch.
 
-    Two batches are asked of each, that none waits; of a single one one, so that there is a word after each.
+    Two batches are asked of each, so that none waits; one of a lone worker, so that progress is told after each.
     """
     ahead = 2 * count if count > 1 else 1
     most, done, failed, spent, begun = min(MOST, total // (SHARES * count)), 0, 0, 0.0, time.monotonic()
