@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, ClassVar, Generic, TypeVar
 
 import numpy as np
 
-from fe_contact import large_strains, relaxing_impact
 from fe_contact.assembly.forms import check_compressible
 from fe_contact.budget import plan as statics
 from fe_contact.budget.budget import CAUSES, Budget, Solution, shares_of
@@ -20,7 +19,6 @@ from fe_contact.budget.runs import operations
 from fe_contact.budget.several import Row, Several
 from fe_contact.errors import faults_of
 from fe_contact.march.impacts import UNFOLLOWED
-from fe_contact.plastic import impact as yielding
 from fe_contact.progress import Progress, silent
 from fe_contact.recovery import indentation_left, recovers
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics, WaveNumerics, check_kind
@@ -74,13 +72,19 @@ Solved = SolvedBy[Certified]  # without waves
 def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
     """Force history of a scene by finite elements, with waves or without, and error bars; see :func:`solve`."""
     if scene.model.plasticity:
+        from fe_contact.plastic import impact as yielding  # late, as all that follows: few impacts need it
+
         with faults_of(scene):
             flowed = _solved(scene, given, progress, yielding.Striking.of)
         return result_of(scene, flowed)
     if scene.model.finite and scene.geometry.material.young.is_elastic:
+        from fe_contact import large_strains
+
         return large_strains.fe(scene, given, progress)
     check(scene, given)
     if scene.model.finite:
+        from fe_contact import relaxing_impact
+
         with faults_of(scene):
             marched = _solved(scene, given, progress, relaxing_impact.RelaxingStrikes)
         return result_of(scene, marched)
@@ -104,8 +108,12 @@ def plan(scene: Scene, given: Given) -> Plan:
     """
     with faults_of(scene):
         if scene.model.plasticity:
+            from fe_contact.plastic import impact as yielding
+
             return yielding.plan(scene, given)
         if scene.model.finite:
+            from fe_contact import large_strains, relaxing_impact
+
             large_strains.check_impact(scene, given)
             if not scene.geometry.material.young.is_elastic:
                 return relaxing_impact.plan(scene, given)
@@ -206,6 +214,8 @@ def expected(scene: Scene, given: Given) -> tuple[float, float]:
     """Tolerance, and processor time, s, about, of :func:`fe` once packages are loaded. Raises NotReached, BadInput."""
     with faults_of(scene):
         if scene.model.finite:
+            from fe_contact import large_strains, relaxing_impact
+
             large_strains.check_impact(scene, given)
             seconds = large_strains if scene.geometry.material.young.is_elastic else relaxing_impact
             return float(given.get("tolerance", DEFAULT_TOLERANCE)), seconds.SECONDS
@@ -215,6 +225,8 @@ def expected(scene: Scene, given: Given) -> tuple[float, float]:
             return chosen.tolerance, target.cost(scene, chosen).seconds
         tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
         if scene.model.plasticity:
+            from fe_contact.plastic import impact as yielding
+
             return tolerance, yielding.SECONDS
         check_target(scene)
         tighter = max(DEFAULT_TOLERANCE / tolerance, 1.0)
@@ -224,6 +236,8 @@ def expected(scene: Scene, given: Given) -> tuple[float, float]:
 def check(scene: Scene, given: Given) -> None:
     """Raise BadInput for an impact that finite elements do not answer."""
     if scene.model.finite:
+        from fe_contact import large_strains
+
         large_strains.check_impact(scene, given)
     elif scene.model.inertia:
         with_waves(scene).check(scene)
@@ -259,6 +273,8 @@ def result_of(scene: Scene, solved: SolvedBy[Solution]) -> Result:
     if isinstance(found, Several) and len(found.row) == 1 and recovers(scene, found.curve):
         recovery = indentation_left(found)
     if isinstance(found, Budget) and scene.model.plasticity:
+        from fe_contact.plastic import impact as yielding
+
         recovery = yielding.dent(found)
     if isinstance(found, Several) and scene.motion.impacts > 1:
         found = Row(found)

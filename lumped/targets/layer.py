@@ -12,8 +12,6 @@ import math
 from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
-from scipy.special import ive
-
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.layer import BASES, LayerCurve, LayerPunch, LineLayer, PointLayer
@@ -126,5 +124,7 @@ def _squeezed(nu: float, breadth: float, plane: bool) -> float:
     length2 = (breadth / x) ** 2
     if plane:
         return 0.6 * length2 * (math.tanh(x) / x - 1.0 / math.cosh(min(x, FAR)) ** 2)
+    from scipy.special import ive  # late: few layers are bonded, wide and compressible
+
     zero, one, two = (float(ive(order, x)) for order in range(3))
     return 1.2 * length2 * (one**2 - zero * two) / zero**2

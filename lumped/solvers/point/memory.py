@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from scipy.special import exprel
 
 from lumped.errors import BadInput, Fault
 from lumped.materials import Recovery, Relaxation
@@ -186,6 +185,8 @@ class FreeSurface:
 
     def at(self, time: Real) -> Array:
         """y and the memories w_k at times of any shape, shape (1 + K, ...), m2."""
+        from scipy.special import exprel  # late: a single impact needs none
+
         times = np.asarray(time, dtype=float)
         column = (-1, *[1] * times.ndim)
         rates = (1.0 / self.times).reshape(column)
