@@ -67,11 +67,11 @@ class PressedSurface:
         return held.T
 
     def gaps(self, springs: Array) -> Callable[[Array], Array]:
-        """What is left of any overlap (q,) where springs (q,) stand between the surfaces."""
+        """What is left of any overlaps (q, k) where springs (q,) stand between the surfaces."""
         if self.compliance is not None:
             return _between_points(self.compliance, springs)
-        solve = factorised(self.held(springs))
-        return lambda overlap: np.asarray(overlap - self.trace @ solve(self.trace.T @ (springs * overlap)))
+        solve, (seen, pushed) = factorised(self.held(springs)), self._facets
+        return lambda overlaps: np.asarray(overlaps - seen @ solve(pushed @ (springs[:, None] * overlaps)))
 
     def work(self, forces: Array) -> float:
         """Of forces (q,) at the points on the displacement that they cause."""
@@ -81,7 +81,8 @@ class PressedSurface:
         """The points (q,) under forces (q,) at them."""
         if self.compliance is not None:
             return np.asarray(self.compliance @ forces)
-        return np.asarray(self.trace @ dgetrs(*self._factors, self.trace.T @ forces)[0])
+        seen, pushed = self._facets
+        return np.asarray(seen @ dgetrs(*self._factors, pushed @ forces)[0])
 
     def in_shapes(self, pressure: Array) -> Array:
         """The nearest to a pressure (q,) that is a combination of the surface's shape functions."""
@@ -92,7 +93,7 @@ class PressedSurface:
     def stiffened(self, stiffness: Array) -> PressedSurface:
         """The same points on another stiffness; what is known of the points alone is shared."""
         other = replace(self, stiffness=stiffness)
-        vars(other).update(_squares=self._squares, _directions=self._directions)
+        vars(other).update(_facets=self._facets, _squares=self._squares, _directions=self._directions)
         return other
 
     @cached_property
@@ -108,12 +109,16 @@ class PressedSurface:
         return np.asarray(found[:, sizes > INDEPENDENT * sizes[0]])
 
     @cached_property
+    def _facets(self) -> tuple[Matrix, Matrix]:
+        """The trace and its transpose, sparse, by rows: a point sees the nodes of its facet alone."""
+        seen = sparse.csr_matrix(self.trace)
+        return seen, seen.T.tocsr()
+
+    @cached_property
     def _squares(self) -> tuple[npt.NDArray[np.intp], Matrix]:
-        """Every point's trace times itself as a column, sparse (m, q), and of the n n places those m that are not zero:
-        a point sees the nodes of its facet alone.
-        """
+        """Every point's trace times itself as a column, sparse (m, q), and of n n places those m that are not zero."""
         points, nodes = self.trace.shape
-        rows = sparse.csr_matrix(self.trace)
+        rows, _ = self._facets
         seen = [rows.indices[start:end] for start, end in zip(rows.indptr, rows.indptr[1:], strict=False)]
         pairs = [(ours[:, None] * nodes + ours).ravel() for ours in seen]
         values = [np.outer(own := self.trace[i, ours], own).ravel() for i, ours in enumerate(seen)]
@@ -127,16 +132,16 @@ def _between_points(compliance: Array, springs: Array) -> Callable[[Array], Arra
     acting = _those(springs)
     root = np.sqrt(springs[acting])
     if not root.size:
-        return lambda overlap: overlap
+        return lambda overlaps: overlaps
     system = root[:, None] * compliance[acting][:, acting] * root
     system[np.diag_indices(root.size)] += 1.0
     solve = factorised(system.T)
 
-    def left(overlap: Array) -> Array:
-        scaled = solve(root * overlap[acting])
-        gap = np.asarray(overlap - compliance[:, acting] @ (root * scaled))
-        gap[acting] = scaled / root
-        return gap
+    def left(overlaps: Array) -> Array:
+        scaled = solve(root[:, None] * overlaps[acting])
+        gaps = np.asarray(overlaps - compliance[:, acting] @ (root[:, None] * scaled))
+        gaps[acting] = scaled / root[:, None]
+        return gaps
 
     return left
 
@@ -294,19 +299,20 @@ class _Once:
 
 
 def _once(problem: ContactProblem, touching: bytes) -> _Once:
-    springs, left, lifted = _pressed(problem.surface, problem.penalty, touching)
-    gap = left(problem.overlap)
+    springs, left = _pressed(problem.surface, problem.penalty, touching)
     given = problem.yielding * springs
+    if not given.any():
+        return _Once(left(problem.overlap[:, None])[:, 0], 0.0, springs)
+    gap, lifted = left(np.stack([problem.overlap, np.ones_like(springs)], axis=1)).T
     retreat = float(given @ gap) / (1.0 + float(given @ lifted))
     return _Once(gap - retreat * lifted, retreat, springs)
 
 
 @lru_cache(maxsize=1)  # where a step's second solve begins its first one ended
-def _pressed(surface: PressedSurface, penalty: float, touching: bytes) -> tuple[Array, Callable[[Array], Array], Array]:
-    """Springs (q,), what they leave of any overlap, and of a striker moved by one."""
+def _pressed(surface: PressedSurface, penalty: float, touching: bytes) -> tuple[Array, Callable[[Array], Array]]:
+    """Springs (q,), and what they leave of any overlaps (q, k)."""
     springs = penalty * surface.weights * np.frombuffer(touching, bool)
-    left = surface.gaps(springs)
-    return springs, left, left(np.ones_like(springs))
+    return springs, surface.gaps(springs)
 
 
 def _answer(surface: PressedSurface, penalty: float, touching: bytes) -> _Answer:
