@@ -155,10 +155,10 @@ def _those(springs: Array) -> slice | npt.NDArray[np.intp]:
 
 def factorised(matrix: Array) -> Callable[[Array], Array]:
     """Solves with a symmetric positive definite matrix, which its factors overwrite. Raises FloatingPointError."""
-    factor, failure = dpotrf(matrix, overwrite_a=True, clean=False)
+    factor, failure = dpotrf(matrix, lower=True, overwrite_a=True, clean=False)  # OpenBLAS takes a third more for upper
     if failure:
         raise FloatingPointError("the condensed stiffness lost its positive definiteness")
-    return lambda right: np.asarray(dpotrs(factor, right)[0])
+    return lambda right: np.asarray(dpotrs(factor, right, lower=True)[0])
 
 
 @dataclass(frozen=True)
