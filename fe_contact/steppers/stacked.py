@@ -165,7 +165,15 @@ class Stacked(Deformable):
     def body(self, relaxation: Relaxation, scheme: MemoryScheme, scale: float) -> StackedBody:
         """The bodies marched by a scheme; each has a modulus of its own, ``relaxation`` is that of all of them."""
         halves = tuple(side.half(scheme, scale) for side in self.sides)
-        return StackedBody(self.operator, self.sides, halves)
+        return StackedBody(self.operator, self.sides, halves, self._points)
+
+    @cached_property
+    def _points(self) -> PressedSurface:
+        """What is known of the points alone, the same in all marches."""
+        trace = np.hstack([side.trace for side in self.sides])
+        blocks = block_diag(*(side.stiffness for side in self.sides))
+        shared = carriers(self.operator, self.sides)
+        return PressedSurface(blocks, trace, self.operator.weights, recurring=False, carriers=shared)
 
     def felt(self, snapshot: Snapshot) -> tuple[Array, Array]:
         """At the nodes, without the roughness that the shape functions do not see.
@@ -181,11 +189,15 @@ class Stacked(Deformable):
 
 @dataclass(frozen=True, eq=False)
 class StackedBody:
-    """The contract of :class:`fe_contact.bodies.offer.Body`; the memory is one for each of the ``halves``."""
+    """The contract of :class:`fe_contact.bodies.offer.Body`; the memory is one for each of the ``halves``.
+
+    ``points``: the surface of a steady body alone; of others what is known of their points.
+    """
 
     operator: SurfaceOperator
     sides: tuple[BodySide, ...]
     halves: tuple[Half, ...]
+    points: PressedSurface
 
     def at_rest(self) -> Memory:
         """Relaxed, undeformed bodies."""
@@ -233,20 +245,12 @@ class StackedBody:
         """All sides, each with its modulus over the common one; a steady body alone is the same in every step."""
         steady = all(side.steady for side in self.sides)
         if steady and len(self.sides) == 1:
-            return self._points
+            return self.points
         weights = tuple(one.now / now for one in found)
         if steady:
             return stacked(self.operator, self.sides, weights)
         blocks = (weight * one.surface.stiffness for one, weight in zip(found, weights, strict=True))
-        return self._points.stiffened(block_diag(*blocks))
-
-    @cached_property
-    def _points(self) -> PressedSurface:
-        """What is known of the points alone."""
-        trace = np.hstack([side.trace for side in self.sides])
-        blocks = block_diag(*(side.stiffness for side in self.sides))
-        shared = carriers(self.operator, self.sides)
-        return PressedSurface(blocks, trace, self.operator.weights, recurring=False, carriers=shared)
+        return self.points.stiffened(block_diag(*blocks))
 
 
 def _together(moduli: Iterable[float]) -> float:
