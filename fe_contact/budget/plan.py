@@ -23,7 +23,7 @@ from fe_contact.settings import DEFAULT_TOLERANCE, RANGES, Given, Numerics, chec
 from fe_contact.steppers.flat_end import FlatEnd
 from fe_contact.targets.base import TARGETS
 from lumped.errors import BadInput
-from lumped.laws import correspondence, mdr, ting
+from lumped.laws import mdr
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.fixed_area import Column
 from lumped.load_curves.sampled import SampledCurve
@@ -157,6 +157,8 @@ def scales(scene: Scene, numerics: Numerics) -> mdr.ImpactScales:
     geometry = scene.geometry
     if isinstance(geometry.target, HalfSpace) and not geometry.shape.flat_radius and not geometry.shape.plane:
         return mdr.estimate(scene, SPRINGS)
+    from lumped.laws import correspondence, ting  # late: most bodies are half-spaces
+
     coarse, curve = numerics.varied(**COARSE), has_curve(scene)
     if not (curve and geometry.surface_remembers):
         check_compressible(scene)
