@@ -13,7 +13,7 @@ from scipy.special import beta, betainc
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import CAUSES, Budget, Causes
-from fe_contact.budget.certify import _rows, _time_steps, trust
+from fe_contact.budget.certify import Trust, _rows, _time_steps, trust
 from fe_contact.budget.curve import Curve, extrapolated, squared_radius
 from fe_contact.budget.several import _error, _flight, _late
 from fe_contact.budget.variation import RIPPLED, SAFETY, STEEPER, Softening, Variation
@@ -459,23 +459,50 @@ def test_the_squared_radius_is_told_at_shares_of_any_contact(rows: int) -> None:
     np.testing.assert_allclose(squares, end**2 * shares * (1.0 - shares), atol=1e-3 * end**2)
 
 
-def trusted(order: int, relaxation: Relaxation, flat: bool) -> Any:
+def trusted(order: int, relaxation: Relaxation, flat: bool) -> Trust:
     """What three runs show that err by the scheme's own order."""
     strike = replace(STRIKE, relaxation=relaxation)
     fine, half, quarter = (
         replace(made_up(STEPS // 2**number, lambda s, e=error: e * s * (1.5 + np.cos(2.0 * s))), strike=strike)
         for number, error in enumerate((1e-4, 1e-4 * 2**order, 1e-4 * 4**order))
     )
-    return trust((fine, half, quarter), order, (1.0 / STEPS, 1.0 / STEPS), flat).orders
+    return trust((fine, half, quarter), order, (1.0 / STEPS, 1.0 / STEPS), flat)
 
 
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("flat", [False, True])
 def test_a_branch_far_longer_than_a_step_takes_no_order_but_where_a_first_one_lags(order: int, flat: bool) -> None:
     """Backward differences of a contact that grows lag behind what relaxes: nothing is left to extrapolate."""
-    slow, elastic = (trusted(order, one, flat) for one in (Relaxation(1.0, (1.0,), (30.0 / STEPS,)), Relaxation(1.0)))
+    relaxations = Relaxation(1.0, (1.0,), (30.0 / STEPS,)), Relaxation(1.0)
+    slow, elastic = (trusted(order, one, flat).orders for one in relaxations)
     lags = order == 1 and not flat
     assert elastic["force"] == order + 1.0
     assert slow["force"] == (order if lags else order + 1.0)
     assert slow["impulse"] == order
     assert elastic["impulse"] == order + 1.0
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
+def test_a_branch_a_thousand_times_faster_than_a_step_is_a_dashpot(share: float) -> None:
+    """That carries as much of the force: it takes as much trust, and leaves no more of what the steps change."""
+    viscosity, time = share / (1.0 - share), 1e-3 / STEPS
+    branch, dashpot = (
+        trusted(2, one, False)
+        for one in (Relaxation(1.0, (viscosity / time,), (time,)), Relaxation(1.0, viscosity=viscosity))
+    )
+    assert dashpot.orders == pytest.approx(branch.orders)
+    assert dashpot.kept == branch.kept == 0.0
+
+
+@pytest.mark.parametrize("times", [(), (30.0 / STEPS,), (1.0 / STEPS,), (1e-3 / STEPS,)])
+def test_a_dashpot_takes_an_order_by_the_share_that_it_carries_whatever_relaxes_beside_it(
+    times: tuple[float, ...],
+) -> None:
+    """What adds up over the contact loses next to a whole one where it carries all, and no force gains any."""
+    moduli = tuple(1e-3 / time for time in times)
+    without, little, much = (trusted(2, Relaxation(1.0, moduli, times, one), False).orders for one in (0.0, 0.1, 1e4))
+    for name in ("force", "impulse", "restitution", "peak_depth"):
+        assert much[name] <= little[name] <= without[name], name
+    for name in ("impulse", "restitution", "peak_depth"):
+        assert little[name] < without[name], name
+        assert much[name] == pytest.approx(1.0, abs=1e-3), name
