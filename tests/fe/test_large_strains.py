@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,7 +22,7 @@ from fe_contact.solids.block import press as press_block
 from fe_contact.solids.bulk import Bulk, Pattern
 from fe_contact.solids.contact import OnDeformed, OnRound, OnUndeformed
 from fe_contact.solids.finite import Hyperelastic
-from fe_contact.solids.newton import BeyondRange, Equilibrium, EquilibriumLost, balanced
+from fe_contact.solids.newton import BeyondRange, Equilibrium, EquilibriumLost, _descended, balanced
 from fe_contact.solids.pressing import Solid, advanced, press
 from fe_contact.solids.rolled import Rolled
 from lumped import BadInput, Scene, laws
@@ -239,6 +242,44 @@ def test_a_nearly_incompressible_body_is_pressed_deep_in_few_iterations() -> Non
     assert found.iterations < 60
     assert found.error < 1e-6
     assert advanced(body.encounter, first, first.balance.depth, 500.0).iterations == 1, "where it is already"
+
+
+def descended(energy: Callable[[float], float], slope: float, way: float = 0.3) -> float:
+    """Where the line search leaves a body of one displacement, from 0.7 on, of the ``way`` that Newton's step goes."""
+    free: Any = SimpleNamespace(body=SimpleNamespace(free=np.array([1])))
+
+    def at(place: Array) -> Any:
+        assert place[0] == 0.1, "what is held stays"
+        moved = float(place[1] - 0.7) / way
+        return SimpleNamespace(encounter=free, displacement=place, energy=energy(moved), moved=moved)
+
+    found: Any = _descended(at(np.array([0.1, 0.7])), np.array([way]), slope, at)
+    return float(found.moved)
+
+
+@pytest.mark.parametrize("way", [0.3, -20.0])
+@pytest.mark.parametrize("bend", [0.5, 1.9, 2.1, 7.0, 60.0, 9000.0])
+def test_a_step_that_lessens_the_energy_is_taken_whole_and_else_at_least_half_of_what_does(
+    bend: float, way: float
+) -> None:
+    """A parabola that is back at its height after 2/bend of a step: shorter ones cost iterations, longer ones climb."""
+    back = 2.0 / bend
+    share = descended(lambda moved: 5.0 - moved + 0.5 * bend * moved**2, -1.0, way)
+    assert min(1.0, 0.499 * back) <= share <= min(1.0, back) + 1e-12
+
+
+def test_a_step_that_hardly_lessens_the_energy_is_no_descent() -> None:
+    """Down and up again steeply: by less than a share of what its slope promises, and not at rest either."""
+    assert descended(lambda moved: 5.0 + 4.0 * max(moved - 0.25, -moved) - 3e-5 * moved, -4.0) == pytest.approx(0.125)
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
+def test_an_energy_that_stands_still_but_for_rounding_is_the_end_and_one_that_climbs_is_named(unit: float) -> None:
+    """In any unit."""
+    assert descended(lambda moved: unit * (5.0 + 1e-15 * moved), -1e-15 * unit) == pytest.approx(1.0)
+    for climbs in (lambda moved: unit * (5.0 + 1e-9 * moved), lambda moved: np.inf * moved if moved else 5.0 * unit):
+        with pytest.raises(EquilibriumLost, match="no descent"):
+            descended(climbs, -1e-12 * unit)
 
 
 @pytest.mark.family
