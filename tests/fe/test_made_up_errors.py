@@ -506,3 +506,27 @@ def test_a_dashpot_takes_an_order_by_the_share_that_it_carries_whatever_relaxes_
     for name in ("impulse", "restitution", "peak_depth"):
         assert little[name] < without[name], name
         assert much[name] == pytest.approx(1.0, abs=1e-3), name
+
+
+def test_energy_that_is_lost_may_belong_to_any_term_that_there_is() -> None:
+    """Of an account that misses 0.25 J, whichever term they are missing from lies within its bar."""
+    lost = {"contact": 0.05, "numerical": -0.1, "residual": 0.1}
+    account = {"in": 3.0, "out": 2.0, "stored": 0.0, "viscous": 1.0} | lost
+    nothing: Any = None
+    found = Budget(replace(TRUTH, energy=account), nothing, dict.fromkeys(CAUSES, ()), nothing, nothing)
+    assert found.energy_error("viscous") == pytest.approx(0.25)
+    assert found.energy_error("contact") == pytest.approx(0.25)
+    assert found.energy_error("stored") == 0.0, "nothing is stored where there is nothing that stores"
+    assert found.energy_error("in") == found.energy_error("out") == 0.0, "they are known from the motion alone"
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-4, 1e-6])
+def test_lines_between_the_rows_of_a_history_err_by_little_of_the_tolerance(
+    settings: Numerics, tolerance: float
+) -> None:
+    nothing: Any = None
+    found = Budget(TRUTH, nothing, dict.fromkeys(CAUSES, ()), nothing, nothing)
+    history = replace(found, numerics=settings.varied(tolerance=tolerance)).history()
+    times = np.linspace(0.0, 1.0, 20001)
+    off = np.abs(np.interp(times, history.time, history.force) - TRUTH.force(times))
+    assert off.max() < 0.2 * tolerance * history.force.max()

@@ -20,9 +20,11 @@ import meshes
 from fe_contact.assembly.operators import surface_operator
 from fe_contact.budget.certify import MESH_ORDER_ANYWHERE, other_mesh
 from fe_contact.budget.plan import plan
+from fe_contact.contact.enforcement import exact
+from fe_contact.contact.problem import ContactProblem
 from fe_contact.fields import felt, peak_step
 from fe_contact.reference import solve
-from fe_contact.steppers.stacked import Stacked
+from fe_contact.steppers.stacked import BodySide, Stacked, stacked
 from fe_contact.steppers.struck import Deformable
 from fe_contact.studies.compare.study import known
 from fe_contact.targets.base import struck
@@ -224,3 +226,15 @@ def test_what_two_bodies_feel_is_read_where_they_can_follow_it(sides: int) -> No
     angles = operator.corners if sides == 2 else operator.nodes[: operator.trace.shape[1]]
     np.testing.assert_allclose(places, body * np.sin(angles), rtol=1e-12)
     np.testing.assert_allclose(pressure, 2.0 - angles, rtol=1e-8)
+
+
+def test_what_presses_one_body_is_found_again_at_every_node_of_it() -> None:
+    """From the overlap that it causes, kept out exactly: a pressure as rough as the body's own shape functions."""
+    operator = surface_operator(meshes.half_space(4.0, 20.0), 4, 0.3).operator
+    surface = stacked(operator, (BodySide(operator, Relaxation(1.0), operator.trace),), (1.0,))
+    nodal = 1.5 + np.random.default_rng(13).uniform(-1.0, 1.0, operator.trace.shape[1])
+    pressure = operator.trace @ nodal
+    moved = operator.trace @ np.linalg.solve(surface.stiffness, operator.trace.T @ (operator.weights * pressure))
+    found = exact.enforce(ContactProblem(surface, moved, np.inf, 0.0), np.ones(pressure.size, dtype=bool))
+    assert pressure.min() > 0.0
+    np.testing.assert_allclose(found.pressure, pressure, rtol=1e-6)
