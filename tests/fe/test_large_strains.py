@@ -414,3 +414,27 @@ def test_impacts_that_are_not_built_are_refused(name: str) -> None:
     scene = Scene.load(name, {"model.kinematics": "finite"})
     with pytest.raises(BadInput, match="kinematics"):
         run(scene)
+
+
+def struck(force: Callable[[Array], Array], bar: float = 0.0) -> Any:
+    """An impact of a second by its force alone."""
+    time = np.linspace(0.0, 1.0, 401)
+    history = SimpleNamespace(time=time, force=force(time), force_error=np.full(401, bar), force_at=force)
+    return SimpleNamespace(history=history)
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e6])
+def test_the_band_of_an_impact_holds_what_its_curve_errs_by_and_how_far_others_are_apart(unit: float) -> None:
+    """In any unit of force, and no more than their sum, but at the end, which comes later of a softer curve."""
+    relative, later = 0.02, 0.05
+
+    def force(time: Array) -> Array:
+        return unit * np.maximum(1.0 - (2.0 * time - 1.0) ** 2, 0.0)
+
+    found, other = struck(force, 0.01 * unit), struck(lambda time: 0.97 * force(time))
+    time = found.history.time
+    alone = large_strains._band(found, (), relative, 0.0)
+    np.testing.assert_allclose(alone, 0.01 * unit + relative * force(time))
+    both = large_strains._band(found, (other,), relative, later)
+    np.testing.assert_allclose(both[:200], 0.01 * unit + 0.05 * force(time[:200]))
+    assert np.all(both[300:] >= 0.01 * unit + 0.05 * force(np.maximum(time[300:] - later, 0.0)) - 1e-3 * unit)

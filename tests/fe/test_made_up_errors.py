@@ -530,3 +530,14 @@ def test_lines_between_the_rows_of_a_history_err_by_little_of_the_tolerance(
     times = np.linspace(0.0, 1.0, 20001)
     off = np.abs(np.interp(times, history.time, history.force) - TRUTH.force(times))
     assert off.max() < 0.2 * tolerance * history.force.max()
+
+
+@pytest.mark.parametrize("failing", [1, 2, 4])
+def test_where_finer_steps_fail_other_settings_are_told_by_no_fewer_than_were_asked_for(
+    settings: Numerics, failing: int
+) -> None:
+    few = settings.varied(steps=16)
+    finest = few.steps * failing
+    found = _time_steps(lambda one: TRUTH if one.steps <= finest else None, few, False)
+    assert (None in found.changes) == (failing < 4), "then nothing is known of the steps"
+    assert found.cheap >= few.steps

@@ -10,10 +10,13 @@ import numpy as np
 import pytest
 import restitution_laws as published
 from scipy.special import beta
+from skfem import MeshTri
 
 import fe_contact
 from fe_contact.assembly.forms import Array
+from fe_contact.errors import BodyTooFine
 from fe_contact.indentation import indent
+from fe_contact.plastic import ground
 from fe_contact.plastic.course import Course, PlasticLoading, Varied, settings
 from fe_contact.plastic.fields import PressedAgain
 from fe_contact.plastic.impact import SPRUNG, Answered, Rebound, _at_most, _release, plan
@@ -351,3 +354,15 @@ def test_what_cannot_yield_here_is_refused_by_name() -> None:
             del merged["striker"]["radius"]
         with pytest.raises(BadInput, match=key):
             Scene.from_dict(merged)
+
+
+@pytest.mark.parametrize("order", [1, 2, 3])
+def test_a_body_is_too_fine_by_its_own_number_of_unknowns(order: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Known before they are made, to a tenth."""
+    mesh = MeshTri().refined(5)
+    unknowns = 2 * ground._basis(mesh, order).N
+    monkeypatch.setattr(ground, "MOST_UNKNOWNS", int(1.1 * unknowns))
+    ground._basis(mesh, order)
+    monkeypatch.setattr(ground, "MOST_UNKNOWNS", int(0.9 * unknowns))
+    with pytest.raises(BodyTooFine, match="accepted up to"):
+        ground._basis(mesh, order)
