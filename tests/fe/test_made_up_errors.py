@@ -541,3 +541,10 @@ def test_where_finer_steps_fail_other_settings_are_told_by_no_fewer_than_were_as
     found = _time_steps(lambda one: TRUTH if one.steps <= finest else None, few, False)
     assert (None in found.changes) == (failing < 4), "then nothing is known of the steps"
     assert found.cheap >= few.steps
+
+
+def test_a_path_that_errs_where_it_ends_moves_the_end_by_the_time_in_which_it_is_covered() -> None:
+    """Two contacts that end at one time by chance, the striker of one a tenth of a millimetre behind."""
+    behind = replace(TRUTH, depth=TRUTH.depth + 1e-4 * TRUTH.x**2)
+    change = Variation(TRUTH, behind, 2.0)
+    assert change.errors["duration"] == pytest.approx(2.0 * 1e-4 / abs(TRUTH.leaving_speed), rel=1e-3)
