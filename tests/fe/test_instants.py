@@ -145,3 +145,21 @@ def test_what_a_straight_line_misses_is_what_ripples(monkeypatch: pytest.MonkeyP
     assert smooth < SMOOTH
     assert rough > 4 * smooth
     assert np.abs(forces - expected).max() < 1e-2 * expected.max(), "and adds up to the force"
+
+
+def test_the_first_pressures_on_a_stiff_memory_are_those_of_a_striker_that_nothing_slows() -> None:
+    """p(r) = 2/(pi R) int E*(t - s(w)) dw up to sqrt(a^2 - r^2), s(w) when the contact was w^2 + r^2 wide, squared."""
+    stiff = {"law": "prony", "E_inf": 1e6, "E": [5e6], "tau": [3e-5], "nu": 0.3}
+    scene = lumped.Scene.load("polymer-sphere", {"target.material": stiff, "model.profile": "parabola"})
+    bend, speed = scene.profile.tip_radius, scene.velocity
+    places, weights = np.polynomial.legendre.leggauss(24)
+    for shot in march_of(scene, 1e-2)[0].snapshots[:4]:
+        radii = np.linspace(0.0, 0.8, 9) * shot.contact_radius
+        width = np.sqrt(bend * speed * shot.time - radii**2)[:, None]
+        since = shot.time - ((0.5 * width * (1.0 + places)) ** 2 + radii[:, None] ** 2) / (bend * speed)
+        modulus = scene.contact_modulus.equilibrium + sum(
+            one * np.exp(-since / time)
+            for one, time in zip(scene.contact_modulus.moduli, scene.contact_modulus.times, strict=True)
+        )
+        exact = 2.0 / (np.pi * bend) * 0.5 * width[:, 0] * (modulus @ weights)
+        assert np.abs(np.interp(radii, shot.radii, shot.pressure) - exact).max() < 0.03 * exact[0]

@@ -29,6 +29,7 @@ from lumped import BadInput, Scene, laws
 from lumped.indentation import Indentation
 from lumped.materials import Material, Relaxation
 from lumped.materials.energies.base import ENERGIES, energy_of, strained
+from lumped.result.result import Quantity
 from lumped.scene.indenter import Indenter
 from lumped.scene.tables import LawChoice, Model
 from lumped.shapes import Sphere
@@ -438,3 +439,13 @@ def test_the_band_of_an_impact_holds_what_its_curve_errs_by_and_how_far_others_a
     both = large_strains._band(found, (other,), relative, later)
     np.testing.assert_allclose(both[:200], 0.01 * unit + 0.05 * force(time[:200]))
     assert np.all(both[300:] >= 0.01 * unit + 0.05 * force(np.maximum(time[300:] - later, 0.0)) - 1e-3 * unit)
+
+
+def test_impacts_are_apart_by_what_both_tell() -> None:
+    """By nothing in what one of them, which does not part, has not."""
+    one, other = struck(lambda time: time), struck(lambda time: 1.1 * time)
+    one.quantities = {"duration": Quantity(None, None, "s"), "peak_force": Quantity(1.0, 0.0, "N")}
+    other.quantities = {"duration": Quantity(1.0, 0.0, "s"), "peak_force": Quantity(1.1, 0.0, "N")}
+    assert large_strains._distance(one, other, "duration") == 0.0
+    assert large_strains._distance(one, other, "peak_force") == pytest.approx(0.1)
+    assert large_strains._distance(one, other, "history_l2") == pytest.approx(0.1)
