@@ -84,6 +84,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     # settings to begin with: what they err by is in the bar, and refined where that is too wide
     ("fe_contact/budget/plan.py", "_elements", ""): BEGINS,
     ("fe_contact/budget/plan.py", "VISCOUS_ORDER", ""): BEGINS,
+    ("fe_contact/plastic/indent.py", "indent", "asked.min()"): BEGINS,
     ("fe_contact/budget/plan.py", "scales", "if grows_once"): BEGINS,
     ("fe_contact/budget/runs.py", "PLACED", ""): BEGINS,
     ("fe_contact/budget/runs.py", "Runs._piloted", ""): BEGINS,
@@ -193,6 +194,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("lumped/solvers/hereditary/closing.py", "shut", "0 ->"): WORK,
     ("lumped/solvers/hereditary/march.py", "SHORTEST, SAME", "1e-13 ->"): WORK,
     ("lumped/solvers/hereditary/march.py", "Stretch.march", "SHORTEST *"): WORK,
+    ("fe_contact/solids/block.py", "ROUNDING", "1e-13 -> 1e-12"): WORK,
     ("fe_contact/reference.py", "MOST_OPERATIONS", ""): WORK,
     ("fe_contact/steppers/bulk_surface.py", "SHORTEST, LONGEST", ""): WORK,
     ("fe_contact/steppers/bulk_surface.py", "Pace.ratios", "share * self.contact_time"): WORK,
@@ -226,6 +228,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     # the same but for rounding, or a bar that is wider and never narrower
     ("fe_contact/waves/line.py", "_largest", "2.0 "): "how far beside a row, in rounding",
     ("fe_contact/waves/line.py", "_largest", "1.0 ->"): "how far beside a row, in rounding",
+    ("lumped/result/history.py", "densified", "t[1:][rough] - start"): "how far beside a step, in rounding",
     (
         "fe_contact/waves/line.py",
         "_largest",
@@ -246,6 +249,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/steppers/flat_end.py", "TOUCHING", ""): "what a flat end has instead of a contact problem",
     ("fe_contact/budget/curve.py", "DENSE", ""): "which of two sets of places, both dense, a curve is looked at",
     ("fe_contact/budget/curve.py", "EARLIEST", ""): "which of two sets of places, both dense, a curve is looked at",
+    ("fe_contact/budget/variation.py", "Variation._about_peak", "1 -> 2"): "which of two neighbouring dense places",
     ("fe_contact/budget/variation.py", "Variation.errors", "if speed"): "a guard against dividing by zero itself",
     ("fe_contact/budget/variation.py", "Variation.energies", "0.5 * speed"): "the square of a small error",
     ("fe_contact/steppers/steps.py", "Inertia.moved", "strike.end_time - state.time"): "an end time but for rounding",
