@@ -13,7 +13,7 @@ from scipy.special import beta, betainc
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import CAUSES, Budget, Causes
-from fe_contact.budget.certify import Trust, _rows, _time_steps, trust
+from fe_contact.budget.certify import ABOUT_A_STEP, Trust, _rows, _time_steps, trust
 from fe_contact.budget.curve import Curve, extrapolated, squared_radius
 from fe_contact.budget.several import _error, _flight, _late
 from fe_contact.budget.variation import RIPPLED, SAFETY, STEEPER, Softening, Variation
@@ -549,3 +549,15 @@ def test_a_path_that_errs_where_it_ends_moves_the_end_by_the_time_in_which_it_is
     behind = replace(TRUTH, depth=TRUTH.depth + 1e-4 * TRUTH.x**2)
     change = Variation(TRUTH, behind, 2.0)
     assert change.errors["duration"] == pytest.approx(2.0 * 1e-4 / abs(TRUTH.leaving_speed), rel=1e-3)
+
+
+def test_a_branch_is_about_as_fast_as_a_step_where_what_it_loses_in_one_is_no_power_of_the_step() -> None:
+    """Of a stress held for a step, as x = step over relaxation time: 1 - (1 - e^-x)/x, x/2 at first and 1 at last.
+
+    Where its slope over logarithms is by more than an eighth from both, steps in the ratio 1 : 2 : 4 show no order.
+    """
+    logarithm = np.linspace(np.log(1e-2), np.log(1e3), 20001)
+    x = np.exp(logarithm)
+    slope = np.gradient(np.log(1.0 + np.expm1(-x) / x), logarithm)
+    between = x[(slope < 7.0 / 8.0) & (slope > 1.0 / 8.0)]
+    assert (between.min(), between.max()) == pytest.approx(ABOUT_A_STEP, rel=0.02)
