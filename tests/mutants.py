@@ -268,6 +268,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/steppers/scaled_surface.py", "_missed", "EDGE * wide"): "a guard against dividing by zero itself",
     ("fe_contact/steppers/scaled_surface.py", "_missed", "BEYOND * stepper"): "a height where nothing ever touches",
     ("fe_contact/steppers/steps.py", "Strike.total", ""): "a default that strikes of scenes do not use",
+    ("fe_contact/steppers/steps.py", "March.memory_time", ""): "a default that marches with a memory do not use",
     ("fe_contact/budget/variation.py", "Softening.errors", "0.0 -> 0.1"): "of quantities that there are not",
     ("fe_contact/budget/variation.py", "Softening.errors", "1.0 -> 0.1"): "of elastic contacts, which give back all",
     ("fe_contact/waves/certify.py", "DEGREE, REACH", ""): "another smoothing, about as wide",

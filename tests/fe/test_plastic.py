@@ -19,7 +19,7 @@ from fe_contact.errors import BodyTooFine
 from fe_contact.indentation import indent
 from fe_contact.plastic import ground
 from fe_contact.plastic.course import Course, PlasticLoading, Varied, settings
-from fe_contact.plastic.fields import PressedAgain
+from fe_contact.plastic.fields import STRESS, PressedAgain
 from fe_contact.plastic.impact import SPRUNG, Answered, Rebound, _at_most, _release, plan
 from fe_contact.plastic.path import FIRST_RELEASED, RELEASED, PlasticFlowSlow, Presser, Station
 from fe_contact.solids.newton import MOST_ITERATIONS
@@ -397,3 +397,13 @@ def test_a_release_is_followed_until_hardly_anything_is_left_to_spring_back(
     assert steps // 2 < left.size <= steps + 2
     even = -np.diff(left[1:-1] ** (2.0 / 3.0)) * (steps + 1.0)
     assert even[1:] == pytest.approx(1.0, rel=0.01)
+
+
+def test_stresses_of_a_field_stand_by_their_names() -> None:
+    """Hooke's law of strains rr, zz and hoop and of a slide, far below the strength; E* = 1."""
+    nu, strains, slide = 0.3, np.array([1e-3, -2e-3, 3e-3]), 4e-3
+    gradient = np.array([strains[0], slide, 0.0, strains[1], strains[2]])[:, None]
+    shear = 0.5 * (1.0 - nu)
+    hooke = 2.0 * shear * (strains + nu / (1.0 - 2.0 * nu) * strains.sum())
+    stress = ground.yielding_of(nu, 1.0, 0.0).flowed(gradient, *ground.at_rest((1,))).stress[STRESS]
+    assert stress[:, 0] == pytest.approx([*hooke, shear * slide])
