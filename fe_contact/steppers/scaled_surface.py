@@ -330,7 +330,8 @@ def _stresses(stepper: Stepper, steps: Sequence[Step], places: Array) -> Array:
     times = np.array(stepper.strike.relaxation.times)
     missed = np.zeros((len(times), len(stepper.radii)))
     found = np.empty_like(places)
-    before, edge, read_at = stepper.touch(), 0.0, 0.0
+    before, edge = stepper.touch(), 0.0
+    read_at = before.time
     for number, step in enumerate(steps):
         missed *= np.exp(-(step.radius_time - read_at) / times)[:, None]
         if step.radius > edge:

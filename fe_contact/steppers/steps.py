@@ -71,7 +71,7 @@ class Strike:
             relaxation=scene.contact_modulus.scaled(scene.geometry.shape.total),
             end_time=scene.end_time,
             total=scene.geometry.shape.total,
-            power=1.0 if scene.geometry.shape.plane else scene.profile.exponent_of_force,
+            power=scene.profile.exponent_of_force,
         )
 
 

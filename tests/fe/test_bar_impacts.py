@@ -283,3 +283,10 @@ def test_a_march_of_one_contact_ends_with_it() -> None:
     found = run(scene, numerics)
     duration = found.reading.quantities["duration"] or 0.0
     assert found.steps <= 1.02 * numerics.steps * duration / ECHO
+
+
+@pytest.mark.parametrize("end", [0.1, 0.25])
+def test_a_march_that_is_cut_off_takes_the_steps_that_there_are_until_then(end: float) -> None:
+    """A hundred in an echo."""
+    scene = replace(Scene.load("bar-impact"), motion=Motion(end_time=end))
+    assert run(scene, plan(scene, {"steps": 100}).numerics).steps == math.ceil(100 * end / ECHO)

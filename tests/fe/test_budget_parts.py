@@ -172,3 +172,21 @@ def test_a_quantity_of_all_contacts_is_told_by_one_of_them_or_by_their_sum(row: 
 def test_what_still_presses_gives_nothing_back_and_has_no_bar_of_that(row: Row) -> None:
     row.budgets[0].curve.quantities["restitution"] = None
     assert row.quantities["restitution"] == Quantity(None, None, "1")
+
+
+def test_rows_of_a_curve_with_waves_are_smoothed_alike_from_either_end() -> None:
+    """A cubic stays as it is, both ends too, what jitters about it is evened out, and no way of time is preferred."""
+    rng = np.random.default_rng(12)
+    places, rows = np.sort(np.append(rng.uniform(0.0, 1.0, 199), [0.0, 1.0])), np.arange(0, 201, 8)
+    cubic = 2.0 - places + 3.0 * places**2 - 4.0 * places**3
+    np.testing.assert_allclose(certify._smoothed(places, cubic, rows), cubic[rows], rtol=1e-12)
+    noise = rng.normal(size=201)
+    found = certify._smoothed(places, noise, rows)
+    back = certify._smoothed(1.0 - places[::-1], noise[::-1], 200 - rows[::-1])
+    np.testing.assert_allclose(back[::-1], found, rtol=1e-9)
+    assert np.array_equal(found[[0, -1]], noise[[0, -1]]), "nothing lies beyond"
+    assert found[1:-1].std() < 0.6 * noise[rows][1:-1].std()
+    few = np.array([0, 1, 2, 3])
+    assert np.array_equal(certify._smoothed(places[:4], noise[:4], few), noise[:4]), (
+        "a cubic through all is no smoothing"
+    )

@@ -11,7 +11,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.optimize import minimize
 
-from fe_contact.bodies.pressing import contact_end
+from fe_contact.bodies.pressing import _place, contact_end
 from fe_contact.contact import problem as contact
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactProblem, ContactSolution, PressedSurface, moved, solve
@@ -419,3 +419,22 @@ def test_a_guess_that_gains_or_loses_points_stays_where_the_contact_is(seed: int
     assert around.size == end - start + by
     assert abs((around[0] + around[-1]) - (start + end - 1)) <= 1
     np.testing.assert_array_equal(np.flatnonzero(moved(places < end, by)), np.arange(end + by))
+
+
+@pytest.mark.parametrize("power", [0.5, 1.5, 4.0])
+def test_a_place_is_found_again_from_the_rise_of_a_profile_there(power: float) -> None:
+    """Exact for any power of the radius, from the first point to the last; none beyond, where nothing is known."""
+    points = (np.arange(20) + 0.5) / 20
+    rise = points**power
+    for place in np.linspace(points[0], points[-1], 100):
+        assert _place(points, rise, place**power) == pytest.approx(place, rel=1e-12)
+    assert _place(points, rise, 0.5 * rise[0]) == points[0]
+    assert _place(points, rise, 2.0 * rise[-1]) == points[-1]
+
+
+@given(st.floats(0.01, 1.0))
+def test_beside_a_flat_end_a_place_is_found_along_a_line(share: float) -> None:
+    points = (np.arange(20) + 0.5) / 20
+    rise = np.maximum(points - points[9], 0.0)
+    value = points[9] + share * (points[10] - points[9])
+    assert _place(points, rise, value - points[9]) == pytest.approx(value, rel=1e-12)

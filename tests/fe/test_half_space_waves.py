@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -245,3 +246,11 @@ def test_compared_with_laws_that_know_no_waves_the_ball_comes_back_slower(tmp_pa
     assert errors["restitution"] == pytest.approx(1.0 - 0.9923, abs=3e-4)
     assert errors["pressure_rebound"] is None
     assert (tmp_path / "compare.png").exists()
+
+
+def test_a_rigid_ball_may_bounce_and_one_that_rings_on_may_not() -> None:
+    bouncing = Scene.load("ball-bouncing-waves")
+    half_space.check(bouncing)
+    mass = 4.0 / 3.0 * math.pi * bouncing.shape.tip_radius**3 * bouncing.material.density
+    with pytest.raises(BadInput, match="rings on"):
+        half_space.check(replace(bouncing, mass=mass, striker_material=bouncing.material))

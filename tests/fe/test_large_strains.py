@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,13 +22,14 @@ from fe_contact.solids.block import press as press_block
 from fe_contact.solids.bulk import Bulk, Pattern
 from fe_contact.solids.contact import OnDeformed, OnRound, OnUndeformed
 from fe_contact.solids.finite import Hyperelastic
-from fe_contact.solids.newton import BeyondRange, Equilibrium, EquilibriumLost, balanced
+from fe_contact.solids.newton import BeyondRange, Equilibrium, EquilibriumLost, _descended, balanced
 from fe_contact.solids.pressing import Solid, advanced, press
 from fe_contact.solids.rolled import Rolled
 from lumped import BadInput, Scene, laws
 from lumped.indentation import Indentation
 from lumped.materials import Material, Relaxation
 from lumped.materials.energies.base import ENERGIES, energy_of, strained
+from lumped.result.result import Quantity
 from lumped.scene.indenter import Indenter
 from lumped.scene.tables import LawChoice, Model
 from lumped.shapes import Sphere
@@ -241,6 +245,44 @@ def test_a_nearly_incompressible_body_is_pressed_deep_in_few_iterations() -> Non
     assert advanced(body.encounter, first, first.balance.depth, 500.0).iterations == 1, "where it is already"
 
 
+def descended(energy: Callable[[float], float], slope: float, way: float = 0.3) -> float:
+    """Where the line search leaves a body of one displacement, from 0.7 on, of the ``way`` that Newton's step goes."""
+    free: Any = SimpleNamespace(body=SimpleNamespace(free=np.array([1])))
+
+    def at(place: Array) -> Any:
+        assert place[0] == 0.1, "what is held stays"
+        moved = float(place[1] - 0.7) / way
+        return SimpleNamespace(encounter=free, displacement=place, energy=energy(moved), moved=moved)
+
+    found: Any = _descended(at(np.array([0.1, 0.7])), np.array([way]), slope, at)
+    return float(found.moved)
+
+
+@pytest.mark.parametrize("way", [0.3, -20.0])
+@pytest.mark.parametrize("bend", [0.5, 1.9, 2.1, 7.0, 60.0, 9000.0])
+def test_a_step_that_lessens_the_energy_is_taken_whole_and_else_at_least_half_of_what_does(
+    bend: float, way: float
+) -> None:
+    """A parabola that is back at its height after 2/bend of a step: shorter ones cost iterations, longer ones climb."""
+    back = 2.0 / bend
+    share = descended(lambda moved: 5.0 - moved + 0.5 * bend * moved**2, -1.0, way)
+    assert min(1.0, 0.499 * back) <= share <= min(1.0, back) + 1e-12
+
+
+def test_a_step_that_hardly_lessens_the_energy_is_no_descent() -> None:
+    """Down and up again steeply: by less than a share of what its slope promises, and not at rest either."""
+    assert descended(lambda moved: 5.0 + 4.0 * max(moved - 0.25, -moved) - 3e-5 * moved, -4.0) == pytest.approx(0.125)
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
+def test_an_energy_that_stands_still_but_for_rounding_is_the_end_and_one_that_climbs_is_named(unit: float) -> None:
+    """In any unit."""
+    assert descended(lambda moved: unit * (5.0 + 1e-15 * moved), -1e-15 * unit) == pytest.approx(1.0)
+    for climbs in (lambda moved: unit * (5.0 + 1e-9 * moved), lambda moved: np.inf * moved if moved else 5.0 * unit):
+        with pytest.raises(EquilibriumLost, match="no descent"):
+            descended(climbs, -1e-12 * unit)
+
+
 @pytest.mark.family
 @pytest.mark.parametrize(("name", "nu"), [(name, (0.3, 0.45)[i % 2]) for i, name in enumerate(ENERGIES.names)])
 def test_small_depths_leave_small_strains_as_the_ledger_has_it(name: str, nu: float) -> None:
@@ -373,3 +415,37 @@ def test_impacts_that_are_not_built_are_refused(name: str) -> None:
     scene = Scene.load(name, {"model.kinematics": "finite"})
     with pytest.raises(BadInput, match="kinematics"):
         run(scene)
+
+
+def struck(force: Callable[[Array], Array], bar: float = 0.0) -> Any:
+    """An impact of a second by its force alone."""
+    time = np.linspace(0.0, 1.0, 401)
+    history = SimpleNamespace(time=time, force=force(time), force_error=np.full(401, bar), force_at=force)
+    return SimpleNamespace(history=history)
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e6])
+def test_the_band_of_an_impact_holds_what_its_curve_errs_by_and_how_far_others_are_apart(unit: float) -> None:
+    """In any unit of force, and no more than their sum, but at the end, which comes later of a softer curve."""
+    relative, later = 0.02, 0.05
+
+    def force(time: Array) -> Array:
+        return unit * np.maximum(1.0 - (2.0 * time - 1.0) ** 2, 0.0)
+
+    found, other = struck(force, 0.01 * unit), struck(lambda time: 0.97 * force(time))
+    time = found.history.time
+    alone = large_strains._band(found, (), relative, 0.0)
+    np.testing.assert_allclose(alone, 0.01 * unit + relative * force(time))
+    both = large_strains._band(found, (other,), relative, later)
+    np.testing.assert_allclose(both[:200], 0.01 * unit + 0.05 * force(time[:200]))
+    assert np.all(both[300:] >= 0.01 * unit + 0.05 * force(np.maximum(time[300:] - later, 0.0)) - 1e-3 * unit)
+
+
+def test_impacts_are_apart_by_what_both_tell() -> None:
+    """By nothing in what one of them, which does not part, has not."""
+    one, other = struck(lambda time: time), struck(lambda time: 1.1 * time)
+    one.quantities = {"duration": Quantity(None, None, "s"), "peak_force": Quantity(1.0, 0.0, "N")}
+    other.quantities = {"duration": Quantity(1.0, 0.0, "s"), "peak_force": Quantity(1.1, 0.0, "N")}
+    assert large_strains._distance(one, other, "duration") == 0.0
+    assert large_strains._distance(one, other, "peak_force") == pytest.approx(0.1)
+    assert large_strains._distance(one, other, "history_l2") == pytest.approx(0.1)

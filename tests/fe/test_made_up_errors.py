@@ -13,7 +13,7 @@ from scipy.special import beta, betainc
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import CAUSES, Budget, Causes
-from fe_contact.budget.certify import _rows, _time_steps, trust
+from fe_contact.budget.certify import ABOUT_A_STEP, Trust, _rows, _time_steps, trust
 from fe_contact.budget.curve import Curve, extrapolated, squared_radius
 from fe_contact.budget.several import _error, _flight, _late
 from fe_contact.budget.variation import RIPPLED, SAFETY, STEEPER, Softening, Variation
@@ -210,8 +210,9 @@ def test_a_tilt_of_the_force_moves_its_peak_by_slope_over_curvature(flat: bool) 
         assert moved == pytest.approx(STEEPER if flat else RIPPLED, rel=0.03)
 
 
-def test_ends_that_are_read_badly_are_known_no_better() -> None:
-    """By any scheme's order, from any two runs: each end lies anywhere within what it was said to be read to."""
+@pytest.mark.parametrize("order", [1, 2, 3])
+def test_ends_that_are_read_badly_are_known_no_better(order: int) -> None:
+    """From any two runs: each end lies anywhere within what it was said to be read to."""
     rng, used = np.random.default_rng(8), 0.0
     for _ in range(100):
         read = 10 ** rng.uniform(-6.0, -2.0, 2)
@@ -220,12 +221,12 @@ def test_ends_that_are_read_badly_are_known_no_better() -> None:
             replace(made_up(steps, np.zeros_like, float(wrong)), end_spread=abs(float(wrong)))
             for steps, wrong in zip((40, 20), late, strict=True)
         ]
-        found = extrapolated(ends[0], ends[1], int(rng.integers(1, 4)))
+        found = extrapolated(ends[0], ends[1], order)
         nothing: Any = None
         bar = Budget(found, nothing, dict.fromkeys(CAUSES, ()), nothing, nothing).total("duration")
         used = max(used, abs(found.duration - 1.0) / bar)
         assert abs(found.duration - 1.0) <= bar * (1.0 + 1e-9)
-    assert used > 0.99, "nor any worse"
+    assert used > 0.95, "nor any worse"
 
 
 def test_runs_that_end_at_quite_different_times_tell_nothing(settings: Numerics) -> None:
@@ -459,23 +460,104 @@ def test_the_squared_radius_is_told_at_shares_of_any_contact(rows: int) -> None:
     np.testing.assert_allclose(squares, end**2 * shares * (1.0 - shares), atol=1e-3 * end**2)
 
 
-def trusted(order: int, relaxation: Relaxation, flat: bool) -> Any:
+def trusted(order: int, relaxation: Relaxation, flat: bool) -> Trust:
     """What three runs show that err by the scheme's own order."""
     strike = replace(STRIKE, relaxation=relaxation)
     fine, half, quarter = (
         replace(made_up(STEPS // 2**number, lambda s, e=error: e * s * (1.5 + np.cos(2.0 * s))), strike=strike)
         for number, error in enumerate((1e-4, 1e-4 * 2**order, 1e-4 * 4**order))
     )
-    return trust((fine, half, quarter), order, (1.0 / STEPS, 1.0 / STEPS), flat).orders
+    return trust((fine, half, quarter), order, (1.0 / STEPS, 1.0 / STEPS), flat)
 
 
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("flat", [False, True])
 def test_a_branch_far_longer_than_a_step_takes_no_order_but_where_a_first_one_lags(order: int, flat: bool) -> None:
     """Backward differences of a contact that grows lag behind what relaxes: nothing is left to extrapolate."""
-    slow, elastic = (trusted(order, one, flat) for one in (Relaxation(1.0, (1.0,), (30.0 / STEPS,)), Relaxation(1.0)))
+    relaxations = Relaxation(1.0, (1.0,), (30.0 / STEPS,)), Relaxation(1.0)
+    slow, elastic = (trusted(order, one, flat).orders for one in relaxations)
     lags = order == 1 and not flat
     assert elastic["force"] == order + 1.0
     assert slow["force"] == (order if lags else order + 1.0)
     assert slow["impulse"] == order
     assert elastic["impulse"] == order + 1.0
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
+def test_a_branch_a_thousand_times_faster_than_a_step_is_a_dashpot(share: float) -> None:
+    """That carries as much of the force: it takes as much trust, and leaves no more of what the steps change."""
+    viscosity, time = share / (1.0 - share), 1e-3 / STEPS
+    branch, dashpot = (
+        trusted(2, one, False)
+        for one in (Relaxation(1.0, (viscosity / time,), (time,)), Relaxation(1.0, viscosity=viscosity))
+    )
+    assert dashpot.orders == pytest.approx(branch.orders)
+    assert dashpot.kept == branch.kept == 0.0
+
+
+@pytest.mark.parametrize("times", [(), (30.0 / STEPS,), (1.0 / STEPS,), (1e-3 / STEPS,)])
+def test_a_dashpot_takes_an_order_by_the_share_that_it_carries_whatever_relaxes_beside_it(
+    times: tuple[float, ...],
+) -> None:
+    """What adds up over the contact loses next to a whole one where it carries all, and no force gains any."""
+    moduli = tuple(1e-3 / time for time in times)
+    without, little, much = (trusted(2, Relaxation(1.0, moduli, times, one), False).orders for one in (0.0, 0.1, 1e4))
+    for name in ("force", "impulse", "restitution", "peak_depth"):
+        assert much[name] <= little[name] <= without[name], name
+    for name in ("impulse", "restitution", "peak_depth"):
+        assert little[name] < without[name], name
+        assert much[name] == pytest.approx(1.0, abs=1e-3), name
+
+
+def test_energy_that_is_lost_may_belong_to_any_term_that_there_is() -> None:
+    """Of an account that misses 0.25 J, whichever term they are missing from lies within its bar."""
+    lost = {"contact": 0.05, "numerical": -0.1, "residual": 0.1}
+    account = {"in": 3.0, "out": 2.0, "stored": 0.0, "viscous": 1.0} | lost
+    nothing: Any = None
+    found = Budget(replace(TRUTH, energy=account), nothing, dict.fromkeys(CAUSES, ()), nothing, nothing)
+    assert found.energy_error("viscous") == pytest.approx(0.25)
+    assert found.energy_error("contact") == pytest.approx(0.25)
+    assert found.energy_error("stored") == 0.0, "nothing is stored where there is nothing that stores"
+    assert found.energy_error("in") == found.energy_error("out") == 0.0, "they are known from the motion alone"
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-4, 1e-6])
+def test_lines_between_the_rows_of_a_history_err_by_little_of_the_tolerance(
+    settings: Numerics, tolerance: float
+) -> None:
+    nothing: Any = None
+    found = Budget(TRUTH, nothing, dict.fromkeys(CAUSES, ()), nothing, nothing)
+    history = replace(found, numerics=settings.varied(tolerance=tolerance)).history()
+    times = np.linspace(0.0, 1.0, 20001)
+    off = np.abs(np.interp(times, history.time, history.force) - TRUTH.force(times))
+    assert off.max() < 0.2 * tolerance * history.force.max()
+
+
+@pytest.mark.parametrize("failing", [1, 2, 4])
+def test_where_finer_steps_fail_other_settings_are_told_by_no_fewer_than_were_asked_for(
+    settings: Numerics, failing: int
+) -> None:
+    few = settings.varied(steps=16)
+    finest = few.steps * failing
+    found = _time_steps(lambda one: TRUTH if one.steps <= finest else None, few, False)
+    assert (None in found.changes) == (failing < 4), "then nothing is known of the steps"
+    assert found.cheap >= few.steps
+
+
+def test_a_path_that_errs_where_it_ends_moves_the_end_by_the_time_in_which_it_is_covered() -> None:
+    """Two contacts that end at one time by chance, the striker of one a tenth of a millimetre behind."""
+    behind = replace(TRUTH, depth=TRUTH.depth + 1e-4 * TRUTH.x**2)
+    change = Variation(TRUTH, behind, 2.0)
+    assert change.errors["duration"] == pytest.approx(2.0 * 1e-4 / abs(TRUTH.leaving_speed), rel=1e-3)
+
+
+def test_a_branch_is_about_as_fast_as_a_step_where_what_it_loses_in_one_is_no_power_of_the_step() -> None:
+    """Of a stress held for a step, as x = step over relaxation time: 1 - (1 - e^-x)/x, x/2 at first and 1 at last.
+
+    Where its slope over logarithms is by more than an eighth from both, steps in the ratio 1 : 2 : 4 show no order.
+    """
+    logarithm = np.linspace(np.log(1e-2), np.log(1e3), 20001)
+    x = np.exp(logarithm)
+    slope = np.gradient(np.log(1.0 + np.expm1(-x) / x), logarithm)
+    between = x[(slope < 7.0 / 8.0) & (slope > 1.0 / 8.0)]
+    assert (between.min(), between.max()) == pytest.approx(ABOUT_A_STEP, rel=0.02)

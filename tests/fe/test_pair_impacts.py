@@ -20,9 +20,12 @@ import meshes
 from fe_contact.assembly.operators import surface_operator
 from fe_contact.budget.certify import MESH_ORDER_ANYWHERE, other_mesh
 from fe_contact.budget.plan import plan
+from fe_contact.contact.enforcement import exact
+from fe_contact.contact.problem import ContactProblem
 from fe_contact.fields import felt, peak_step
 from fe_contact.reference import solve
-from fe_contact.steppers.stacked import Stacked
+from fe_contact.steppers.stacked import BodySide, Stacked, stacked
+from fe_contact.steppers.steps import Strike
 from fe_contact.steppers.struck import Deformable
 from fe_contact.studies.compare.study import known
 from fe_contact.targets.base import struck
@@ -224,3 +227,50 @@ def test_what_two_bodies_feel_is_read_where_they_can_follow_it(sides: int) -> No
     angles = operator.corners if sides == 2 else operator.nodes[: operator.trace.shape[1]]
     np.testing.assert_allclose(places, body * np.sin(angles), rtol=1e-12)
     np.testing.assert_allclose(pressure, 2.0 - angles, rtol=1e-8)
+
+
+def test_what_presses_one_body_is_found_again_at_every_node_of_it() -> None:
+    """From the overlap that it causes, kept out exactly: a pressure as rough as the body's own shape functions."""
+    operator = surface_operator(meshes.half_space(4.0, 20.0), 4, 0.3).operator
+    surface = stacked(operator, (BodySide(operator, Relaxation(1.0), operator.trace),), (1.0,))
+    nodal = 1.5 + np.random.default_rng(13).uniform(-1.0, 1.0, operator.trace.shape[1])
+    pressure = operator.trace @ nodal
+    moved = operator.trace @ np.linalg.solve(surface.stiffness, operator.trace.T @ (operator.weights * pressure))
+    found = exact.enforce(ContactProblem(surface, moved, np.inf, 0.0), np.ones(pressure.size, dtype=bool))
+    assert pressure.min() > 0.0
+    np.testing.assert_allclose(found.pressure, pressure, rtol=1e-6)
+
+
+def bends(*radii: float) -> float:
+    return sum(1.0 / radius for radius in radii)
+
+
+@pytest.mark.parametrize(
+    ("name", "bend"),
+    [
+        ("steel-ball", lambda scene: bends(scene.shape.radius)),
+        ("two-spheres", lambda scene: bends(scene.shape.radius, scene.target.radius)),
+        ("polymer-half-plane", lambda scene: bends(scene.shape.radius)),
+        ("polymer-o-ring", lambda scene: 2.0 * bends(scene.target.section_radius)),  # pressed on both sides
+        ("rod-in-ring", lambda scene: bends(scene.shape.radius, -scene.target.inner_radius)),
+    ],
+)
+def test_surfaces_part_from_the_first_touch_on_by_how_they_bend(name: str, bend: Callable[[Any], float]) -> None:
+    """By half the square of the way along them, in any depth; on a flat surface one depth moves every place alike."""
+    scene = Scene.load(name)
+    strike, curvature = Strike.of(scene), bend(scene)
+    arc = np.array([1e-4, 1e-3]) / curvature
+    np.testing.assert_allclose(strike.height(arc), 0.5 * curvature * arc**2, rtol=1e-3)
+    assert (strike.overlap is None) == (name != "rod-in-ring")
+    if strike.overlap is not None:
+        depth = 1e-7 / curvature
+        np.testing.assert_allclose(strike.overlap(arc, depth), depth - strike.height(arc), rtol=1e-3)
+
+
+@pytest.mark.parametrize("name", ["steel-ball", "polymer-cone", "polymer-power", "polymer-half-plane", "polymer-punch"])
+def test_an_elastic_force_begins_with_the_power_that_its_exact_curve_has(name: str) -> None:
+    """In plane strain but for a logarithm."""
+    scene = Scene.load(name)
+    depth = scene.shape.tip_radius or 1e-2
+    first, second = scene.geometry.target.load_curve(scene.profile, 0.3).force(1e-9 * depth * np.array([1.0, 2.0]))
+    assert Strike.of(scene).power == pytest.approx(np.log2(second / first), abs=0.06)

@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 import restitution_laws as published
 from scipy.special import beta
+from skfem import MeshTri
 
 import fe_contact
 from fe_contact.assembly.forms import Array
+from fe_contact.errors import BodyTooFine
 from fe_contact.indentation import indent
+from fe_contact.plastic import ground
 from fe_contact.plastic.course import Course, PlasticLoading, Varied, settings
-from fe_contact.plastic.fields import PressedAgain
+from fe_contact.plastic.fields import STRESS, PressedAgain
 from fe_contact.plastic.impact import SPRUNG, Answered, Rebound, _at_most, _release, plan
-from fe_contact.plastic.path import PlasticFlowSlow, Presser, Station
+from fe_contact.plastic.path import FIRST_RELEASED, RELEASED, PlasticFlowSlow, Presser, Station
 from fe_contact.solids.newton import MOST_ITERATIONS
 from fe_contact.steppers.steps import Work
 from fe_contact.studies.compare.study import compare
@@ -351,3 +355,55 @@ def test_what_cannot_yield_here_is_refused_by_name() -> None:
             del merged["striker"]["radius"]
         with pytest.raises(BadInput, match=key):
             Scene.from_dict(merged)
+
+
+@pytest.mark.parametrize("order", [1, 2, 3])
+def test_a_body_is_too_fine_by_its_own_number_of_unknowns(order: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Known before they are made, to a tenth."""
+    mesh = MeshTri().refined(5)
+    unknowns = 2 * ground._basis(mesh, order).N
+    monkeypatch.setattr(ground, "MOST_UNKNOWNS", int(1.1 * unknowns))
+    ground._basis(mesh, order)
+    monkeypatch.setattr(ground, "MOST_UNKNOWNS", int(0.9 * unknowns))
+    with pytest.raises(BodyTooFine, match="accepted up to"):
+        ground._basis(mesh, order)
+
+
+def releases(power: float, steps: int, unit: float) -> tuple[Array, Array, float]:
+    """Depths and forces of a release, and the depth where it ends, of a contact whose end is known."""
+    end, radius = 0.7 * unit, 0.2
+    stiff = 2.0 * radius * 0.3 * unit / (power * (0.3 * unit) ** power)  # 2 a per depth where it begins, E* = 1
+
+    def at(before: Any, here: Any, depth: float) -> Any:
+        return SimpleNamespace(depth=depth, force=stiff * max(depth - end, 0.0) ** power, radius=radius)
+
+    pressed: Any = SimpleNamespace(_released=at)
+    found = Presser.released(pressed, at(None, None, unit), steps, power)
+    return np.array([one.depth for one in found]), np.array([one.force for one in found]), end
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0])
+@pytest.mark.parametrize("power", [1.0, 1.5])
+@pytest.mark.parametrize("steps", [6, 12, 40])
+def test_a_release_is_followed_until_hardly_anything_is_left_to_spring_back(
+    steps: int, power: float, unit: float
+) -> None:
+    """First by so little that the contact is as stiff as it began, then evenly in the power 2/3 of what is left."""
+    depth, force, end = releases(power, steps, unit)
+    assert force[1] / force[0] == pytest.approx(1.0 - FIRST_RELEASED, abs=0.3 * FIRST_RELEASED)
+    left = (depth - end) / (depth[0] - end)
+    assert np.all(np.diff(left) < 0.0)
+    assert 0.5 * RELEASED <= left[-1] <= max(RELEASED, 1.01 * (steps + 1.0) ** -1.5)
+    assert steps // 2 < left.size <= steps + 2
+    even = -np.diff(left[1:-1] ** (2.0 / 3.0)) * (steps + 1.0)
+    assert even[1:] == pytest.approx(1.0, rel=0.01)
+
+
+def test_stresses_of_a_field_stand_by_their_names() -> None:
+    """Hooke's law of strains rr, zz and hoop and of a slide, far below the strength; E* = 1."""
+    nu, strains, slide = 0.3, np.array([1e-3, -2e-3, 3e-3]), 4e-3
+    gradient = np.array([strains[0], slide, 0.0, strains[1], strains[2]])[:, None]
+    shear = 0.5 * (1.0 - nu)
+    hooke = 2.0 * shear * (strains + nu / (1.0 - 2.0 * nu) * strains.sum())
+    stress = ground.yielding_of(nu, 1.0, 0.0).flowed(gradient, *ground.at_rest((1,))).stress[STRESS]
+    assert stress[:, 0] == pytest.approx([*hooke, shear * slide])

@@ -312,3 +312,17 @@ def test_a_setting_of_waves_is_refused_by_its_key() -> None:
     scene = Scene.load("polymer-sphere", {"model.kinematics": "finite"})
     with pytest.raises(BadInput, match=r"numerics\.mass: no such setting"):
         reference.plan(scene, {"mass": "lumped"})
+
+
+def test_a_body_is_meshed_by_the_contact_that_is_expected_of_any_size() -> None:
+    """Under a sphere a thousand times as large as under a small one."""
+    scenes = [Scene.load("polymer-sphere-finite", {"striker.radius": radius}) for radius in (0.01, 10.0)]
+    wide, meshes = [], []
+    for scene in scenes:
+        numerics = plan(scene, {"elements_per_contact": 2.0, "order": 2}).numerics
+        solid = Marcher.of(scene, numerics).solid
+        wide.append(solid.unit / numerics.contact_radius)
+        meshes.append(solid.encounter.body.core.dofs.shape)
+    assert wide[0] == pytest.approx(wide[1])
+    assert 1.0 < wide[0] < 2.0
+    assert meshes[0] == meshes[1]

@@ -11,6 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from lumped import Result, Scene, laws, simulate
@@ -20,8 +22,8 @@ from lumped.result.history import End
 from lumped.scene.tables import Motion
 from lumped.shapes.cone import Cone
 from lumped.shapes.power import PowerProfile
-from lumped.solvers.mdr.nest import Grid, Nest, coarse, limit, predicted_turn, problem_of
-from lumped.solvers.mdr.row import SERIES_BELOW, fading
+from lumped.solvers.mdr.nest import REST, Adaptive, Grid, Nest, coarse, limit, predicted_turn, problem_of
+from lumped.solvers.mdr.row import SERIES_BELOW, Instant, fading
 
 Array = NDArray[np.float64]
 
@@ -311,3 +313,27 @@ def test_a_fading_branch_is_integrated_however_long_the_step(ratio: float) -> No
     e = np.exp(-u / tau)
     integrals = (du @ e, du @ (e * (h - u)), du @ (e * (h - u) ** 2) / h, tau * (du @ np.expm1(-u / tau) ** 2))
     assert fading(tau, h) == pytest.approx((math.exp(-ratio), *integrals), rel=1e-12)
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_a_step_of_the_row_errs_by_what_the_trapezoidal_rule_makes_of_a_parabola(seed: int) -> None:
+    """Of three unequal steps, over the tolerance: the velocity by the rule against its exact integral."""
+    rng = np.random.default_rng(seed)
+    pace = Adaptive(first=1.0, elements=int(rng.integers(8, 200)), reach=1.0, velocity=1.0)
+    bend = np.polynomial.Polynomial(rng.normal(size=3))
+    speed, times = bend.integ(k=float(rng.normal())), np.cumsum(rng.uniform(0.02, 1.0, 3))
+    before, now, then = (Instant(time, 0.0, float(speed(time)), float(bend(time)), 0.0, 0.0) for time in times)
+    by_rule = now.velocity + 0.5 * (then.time - now.time) * (now.acceleration + then.acceleration)
+    largest = max(abs(now.velocity), abs(then.velocity), REST)
+    wrong = abs(by_rule - then.velocity) / largest
+    assert pace.error(before, now, then) * pace.tolerance == pytest.approx(wrong, rel=1e-6, abs=1e-12)
+    assert pace.error(before, now, now) == 0.0, "no step"
+    assert pace.error(now, now, then) == 0.0, "nothing is known of the bend"
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+def test_steps_near_the_turn_are_judged_by_the_speed_at_touch(unit: float) -> None:
+    """The same in any unit of length: where the velocity is zero its errors count by a share of that at touch."""
+    pace = Adaptive(first=1.0, elements=50, reach=1.0, velocity=unit)
+    at_rest = [Instant(float(time), 0.0, 0.0, unit * time**2, 0.0, 0.0) for time in (0.0, 1.0, 2.0)]
+    assert pace.error(*at_rest) * pace.tolerance == pytest.approx(1.0 / 6.0 / REST)
