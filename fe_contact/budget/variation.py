@@ -240,17 +240,23 @@ class Variation:
 
 
 def calmest(curve: Curve) -> Curve:
-    """The curve through every other of its steps as long as its force jitters less so, down to ``FEWEST`` of them.
+    """The curve evened to every other of its steps as long as its force jitters less so, down to ``FEWEST`` of them.
 
     On a mesh that stays, the edge crosses node after node: a dashpot's force, which is one of velocities, jitters by
     the more the shorter the step is. What it jitters by is what every other step less changes.
     """
+    jitter = _jitter(curve)
     while len(curve.x) > 2 * FEWEST:
-        thinner = curve.thinned()
-        if Variation(thinner, thinner.thinned(), 1.0).history >= Variation(curve, thinner, 1.0).history:
+        calmer = curve.evened()
+        less = _jitter(calmer)
+        if less >= jitter:
             break
-        curve = thinner
+        curve, jitter = calmer, less
     return curve
+
+
+def _jitter(curve: Curve) -> float:
+    return Variation(curve, curve.thinned(), 1.0).history
 
 
 @dataclass(frozen=True)
