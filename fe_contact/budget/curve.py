@@ -187,6 +187,12 @@ class Curve:
         mean[[0, -1]] = kept.mean_force[[0, -1]]
         return replace(kept, mean_force=mean)
 
+    def read_at(self, x: Array) -> Curve:
+        """The curve through other rows, the first of them at touch."""
+        mean, _, depth = self.resolved(x)
+        mean[0], depth[0] = self.mean_force[0], self.depth[0]
+        return replace(self, x=x, mean_force=mean, depth=depth)
+
     @cached_property
     def polynomials(self) -> LocalPolynomials:
         """Mean force but for how it began, and depth, between the steps, over x; at touch it has only begun."""
