@@ -25,7 +25,7 @@ from fe_contact.settings import Given, Numerics, WaveNumerics
 from fe_contact.waves.line_reading import DENT, DEPTH, FORCE, ROUNDING, TIME, VELOCITY, RodReading
 from lumped.result.history import LEAST_ROWS, History
 from lumped.result.model_ledger import Peak, model_ledger
-from lumped.result.result import RULED_ABSOLUTE, UNITS, LedgerEntry, Quantity, meets
+from lumped.result.result import RULED_ABSOLUTE, UNITS, LedgerEntry, Quantity, largest_bar, meets
 from lumped.result.score import distance
 from lumped.scene.scene import Scene
 
@@ -37,6 +37,7 @@ LATE = 0.75  # of the contact, from where on motion counts for that at the end
 BEHIND = 0.002  # of the contact, that a front has to arrive before its end
 AWAY = 0.02  # share of the contact within which a change counts as the error of its neighbours
 ROUNDS = 5  # refinements before giving up, each of half the steps: the work has a bound of its own
+STILL = 0.9  # of the largest bar of four times fewer steps: what falls as a root of the step is a half by then
 STEP = 2_000  # unknowns whose share of a step takes as long as all the rest of it
 # Settings that tell nothing of line elements, or what a step's own length says already.
 LINE: Given = {"elements_per_contact": 1.0, "order": 1, "penalty": 1.0, "peak_share": 0.5, "rho": 1.0}
@@ -331,7 +332,7 @@ class Doubling:
     """``march`` of a scene with settings, and those with one cause of error ``varied`` at a time; ``most_steps``.
 
     ``dented``: whether what was found, a dent, says more of what the model leaves out than the plan. Each march is made
-    once: with twice the steps, the one before is what half of them give.
+    once: with twice the steps, the one before is what half of them give. ``bars``: the largest one by steps.
     """
 
     scene: Scene
@@ -342,6 +343,7 @@ class Doubling:
     dented: bool
     progress: Progress
     runs: dict[WaveNumerics, Run] = field(default_factory=dict)
+    bars: dict[int, float] = field(default_factory=dict)
     rounds: ClassVar[int] = ROUNDS
 
     def certified(self, numerics: Numerics) -> Line:
@@ -351,7 +353,9 @@ class Doubling:
         others = self.varied(numerics)
         quarter = self._marched(self.varied(others["time_step"])["time_step"])
         fine, varied = self._marched(numerics), {cause: self._marched(other) for cause, other in others.items()}
-        return Line(self.scene, numerics, fine, varied, quarter, tuple(self.runs.values()))
+        found = Line(self.scene, numerics, fine, varied, quarter, tuple(self.runs.values()))
+        self.bars[numerics.steps] = largest_bar(found.quantities)
+        return found
 
     def finer(self, found: Line) -> Finer:
         """Twice the steps, ``most_steps`` at most, where a bar is too wide and the work allows it."""
@@ -359,8 +363,12 @@ class Doubling:
         dear = _work(2 * found.fine.steps, 2 * found.fine.unknowns) + self._spent > MOST_WORK
         if "steps" in self.chosen.pinned or twice > self.most_steps or dear:
             return Finer(None)
-        done = meets(found.quantities, found.numerics.tolerance)
-        return Finer(None if done else found.numerics.varied(steps=twice))
+        if meets(found.quantities, found.numerics.tolerance):
+            return Finer(None)
+        few, steps = found.numerics.steps // 4, found.numerics.steps
+        if few in self.bars and self.bars[steps] > STILL * self.bars[few]:
+            return Finer(None, f"{steps} steps do no better than {few}")
+        return Finer(found.numerics.varied(steps=twice))
 
     def ledger(self, found: Line) -> Sequence[LedgerEntry]:
         """What the model leaves out."""

@@ -237,3 +237,13 @@ def test_how_often_was_refined_is_said_where_it_was_not_enough(monkeypatch: pyte
     found = simulate(scene, "fe", {"tolerance": 1e-4})
     assert not found.converged
     assert "; refined 1 times, which was not enough; a tolerance of " in found.message
+
+
+def test_steps_that_better_nothing_are_not_halved_for_ever() -> None:
+    """Under a usual penalty the force of a bar's impact chatters, whatever the steps: two rounds show it."""
+    given = {"scheme": "generalised_alpha", "mass": "redistributed", "enforcement": "penalty", "rho": 0.5}
+    found = simulate(Scene.load("bar-impact"), "fe", {"tolerance": 0.01, **given})
+    said = re.search(r"; (\d+) steps do no better than (\d+); ", found.message)
+    assert not found.converged
+    assert said
+    assert int(said[1]) == 4 * int(said[2]) == found.numerics["steps"]
