@@ -25,7 +25,7 @@ class MeshTooLarge(MeshError):
 
     def __init__(self, most: int) -> None:
         self.most = most
-        reason = f"a mesh of more than {most} nodes is not made"
+        reason = f"a mesh of more than {most} nodes, or of a quarter as many along its boundary, is not made"
         super().__init__(f"{reason}; cure: fewer elements along a contact, a thicker body, a nearer far end")
 
 
