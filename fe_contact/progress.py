@@ -34,7 +34,7 @@ def to_all(listeners: Sequence[Progress]) -> Progress:
 
 @dataclass
 class Count:
-    """Equal parts of one work, as the steps of marches, told as they are done; ``total`` of them are expected."""
+    """Equal parts of one work, as the steps of marches, told as they are done; ``total`` expected, 0: nobody knows."""
 
     progress: Progress
     message: str
@@ -50,7 +50,7 @@ class Count:
     def __call__(self, parts: float = 1.0) -> None:
         """So many more are done."""
         self.done += parts
-        self.progress(self.message, self.done, max(self.total, self.done))
+        self.progress(self.message, self.done, max(self.total, self.done) if self.total else 0.0)
 
 
 def uncounted(parts: float = 1.0) -> None:

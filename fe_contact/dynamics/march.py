@@ -30,6 +30,7 @@ from fe_contact.dynamics.body import BodyState, BodyWithMass, undeformed
 from fe_contact.dynamics.schemes.base import Scheme
 from fe_contact.dynamics.stepping import Enforced, ExplicitStepper, ImplicitStepper
 from fe_contact.errors import ContactLost, MotionUnbounded, TooManySteps
+from fe_contact.progress import Counted, uncounted
 from lumped.errors import BadInput, Fault
 
 MOST_STEPS = 200_000  # of a small body: a minute and a half, nearly all of it beside the unknowns
@@ -142,16 +143,18 @@ def march(
     end_time: float,
     watch: Array,
     finished: Callable[[Sample], bool] = lambda sample: False,
+    counted: Counted = uncounted,
 ) -> Motion:
     """Move an undeformed body with ``velocity`` (N,) until ``end_time``, s, or until a sample says it is finished.
 
-    ``watch`` (k, N): weights of the displacements that are recorded.
+    ``watch`` (k, N): weights of the displacements that are recorded; ``counted`` is told of every step.
 
     Raises ContactNotSettled, MotionUnbounded or TooManySteps; BadInput for a scheme that the body does not admit.
     """
     state = undeformed(body, velocity)
     steppers = Steppers(body, choices.enforced)
-    return onwards(steppers, Moment(state, account_at_start(body, state)), choices, end_time, watch, finished)
+    begun = Moment(state, account_at_start(body, state))
+    return onwards(steppers, begun, choices, end_time, watch, finished, counted)
 
 
 class Steppers:
@@ -179,6 +182,7 @@ def onwards(
     end_time: float,
     watch: Array,
     finished: Callable[[Sample], bool],
+    counted: Counted = uncounted,
 ) -> Motion:
     """The same from a moment on, with which another ``end_time``, s, and the lengths of the steps begin anew."""
     body, scheme = steppers.body, choices.scheme
@@ -203,6 +207,7 @@ def onwards(
             impulse += _impulse(body, before, state)
             iterations += found.iterations
         samples.append(_sample(body, state, impulse, watch, energies, iterations))
+        counted(1.0)
         if finished(samples[-1]):
             break
     return Motion(tuple(samples), state, parts)

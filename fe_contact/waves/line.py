@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import ClassVar
+from typing import ClassVar, Protocol
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from fe_contact.budget.curve import PEAK_SHARE
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer
 from fe_contact.budget.variation import SAFETY
-from fe_contact.progress import Progress
+from fe_contact.progress import Count, Counted, Progress
 from fe_contact.settings import Given, Numerics, WaveNumerics
 from fe_contact.waves.line_reading import DENT, DEPTH, FORCE, ROUNDING, TIME, VELOCITY, RodReading
 from lumped.result.history import LEAST_ROWS, History
@@ -327,6 +327,12 @@ def _places(fine: RodReading) -> Array:
     return np.linspace(0.0, fine.rows[TIME, -1] * (1.0 - ROUNDING), COMPARED)
 
 
+class LineMarch(Protocol):
+    """One march of a scene with some settings, its steps ``counted``. Raises NotReached where it does not end."""
+
+    def __call__(self, numerics: WaveNumerics, counted: Counted = ...) -> Run: ...
+
+
 @dataclass(frozen=True, eq=False)
 class Doubling:
     """``march`` of a scene with settings, and those with one cause of error ``varied`` at a time; ``most_steps``.
@@ -337,7 +343,7 @@ class Doubling:
 
     scene: Scene
     chosen: Plan
-    march: Callable[[WaveNumerics], Run]
+    march: LineMarch
     varied: Callable[[WaveNumerics], Mapping[str, WaveNumerics]]
     most_steps: float
     dented: bool
@@ -349,7 +355,6 @@ class Doubling:
     def certified(self, numerics: Numerics) -> Line:
         """The march and its variations. Raises NotReached where one does not end."""
         assert isinstance(numerics, WaveNumerics)
-        self.progress(f"{numerics.steps} steps of waves along a line")
         others = self.varied(numerics)
         quarter = self._marched(self.varied(others["time_step"])["time_step"])
         fine, varied = self._marched(numerics), {cause: self._marched(other) for cause, other in others.items()}
@@ -378,7 +383,8 @@ class Doubling:
 
     def _marched(self, numerics: WaveNumerics) -> Run:
         if numerics not in self.runs:
-            self.runs[numerics] = self.march(numerics)
+            message = f"steps of waves along a line (numerics.steps = {numerics.steps})"
+            self.runs[numerics] = self.march(numerics, Count.of(self.progress, message, 0.0))
         return self.runs[numerics]
 
     @property

@@ -128,6 +128,17 @@ def test_waves_tell_their_cost_and_their_steps() -> None:
     assert 0.5 < done / total <= 1.0
 
 
+@pytest.mark.parametrize("name", ["rod", "bar-impact"])
+def test_waves_along_a_line_tell_every_step(name: str) -> None:
+    """A heavy striker's contact may take minutes of them; nobody knows how many there will be."""
+    told = list[tuple[str, float, float]]()
+    found = simulate(Scene.load(name), "fe", {}, progress=lambda *word, **_: told.append((*word, 0.0, 0.0)[:3]))
+    message = f"steps of waves along a line (numerics.steps = {found.numerics['steps']})"
+    steps = [(done, total) for what, done, total in told if what == message and done > 0.0]
+    assert steps == [(number, 0.0) for number in range(1, len(steps) + 1)]
+    assert len(steps) >= found.numerics["steps"] // 2
+
+
 @pytest.mark.parametrize("place", ["missing/log", "."])
 def test_a_log_that_cannot_be_written_is_refused_before_the_work(
     place: str, empty: Path, capsys: pytest.CaptureFixture[str]

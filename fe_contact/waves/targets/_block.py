@@ -17,7 +17,7 @@ from fe_contact.dynamics.march import Choices, march
 from fe_contact.dynamics.mass.base import MASSES
 from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
 from fe_contact.dynamics.stepping import Enforced
-from fe_contact.progress import Progress
+from fe_contact.progress import Counted, Progress, uncounted
 from fe_contact.settings import Given, WaveNumerics
 from fe_contact.waves.impact import account
 from fe_contact.waves.line import LINE, Doubling, Run, witness
@@ -115,8 +115,8 @@ def echo_time(scene: Scene) -> float:
     return 2.0 * bar.length * math.sqrt(bar.density / bar.relaxation.glassy)
 
 
-def run(scene: Scene, numerics: WaveNumerics) -> Run:
-    """One march, its steps those in which a wave crosses an element. Raises NotReached."""
+def run(scene: Scene, numerics: WaveNumerics, counted: Counted = uncounted) -> Run:
+    """One march, its steps, ``counted``, those in which a wave crosses an element. Raises NotReached."""
     bar, echo = bar_of(scene), echo_time(scene)
     elements = max(numerics.steps // 2, 2)
     tip = usual_tip(scene)
@@ -131,7 +131,7 @@ def run(scene: Scene, numerics: WaveNumerics) -> Run:
     watch = -carried[None, :] / carried.sum()
     pause = 0.0 if scene.motion.impacts == 1 else PAUSE * echo
     ending = Ending(scene.motion.impacts, pause)
-    found = march(body, np.full(body.size, -scene.velocity), choices, scene.end_time, watch, ending)
+    found = march(body, np.full(body.size, -scene.velocity), choices, scene.end_time, watch, ending, counted)
     fronts = 2 * elements if choices.scheme.explicit and not body.massless.size else None
     reading, contacts = read_bar(found, carried.sum(), scene, pause, fronts)
     energy = account(found, carried.sum())  # stored: strain, and motion about the centre of mass

@@ -25,7 +25,7 @@ from fe_contact.dynamics.mass.base import MASSES
 from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
 from fe_contact.dynamics.stepping import Enforced
 from fe_contact.errors import RodTooLong
-from fe_contact.progress import Progress
+from fe_contact.progress import Counted, Progress, uncounted
 from fe_contact.settings import RANGES, Given, WaveNumerics
 from fe_contact.waves.impact import energies, left
 from fe_contact.waves.line import LINE, Doubling, Run, witness
@@ -145,14 +145,14 @@ def check(scene: Scene) -> None:
         raise BadInput(Fault(scene.source, "target.material.law", reason))
 
 
-def run(scene: Scene, numerics: WaveNumerics) -> Run:
-    """One march, its steps those in which a wave crosses an element. Raises NotReached."""
+def run(scene: Scene, numerics: WaveNumerics, counted: Counted = uncounted) -> Run:
+    """One march, its steps, ``counted``, those in which a wave crosses an element. Raises NotReached."""
     body = moving(scene, numerics)
     count = elements(scene, numerics)
     step = transit(scene) / count
     choices = Choices(WAVE_SCHEMES.get(numerics.scheme).of(numerics.rho), _enforced(scene, numerics), step)
     gone = partial(left, slow=ROUNDING * scene.velocity)  # of a light striker's force an echo finds but rounding
-    found = march(body.body, body.velocity, choices, scene.end_time, body.watch, gone)
+    found = march(body.body, body.velocity, choices, scene.end_time, body.watch, gone, counted)
     reading = read_rod(found, scene, count, gone(found.samples[-1]))
     return Run(reading, energies(body, found, scene), len(found.samples) - 1, body.body.size)
 
