@@ -74,8 +74,6 @@ TABLE = (
         0.5,
     ),
     Constant(VARIATION, "FEWEST", WORK, "steps that the curve of a jittering force keeps"),
-    Constant(VARIATION, "FEWEST_CROSSED", WORK, "corners that an edge crosses, at least, where it is read there"),
-    Constant(VARIATION, "CROSSED_SLOWLY", WORK, "rows between two corners, above which these tell less"),
     Constant(VARIATION, "SMOOTHING", MEASURED, "a change that crosses zero is that of its neighbours", 0.0),
     Constant(CERTIFY, "AS_EXPECTED", MEASURED, "ratio of changes over the expected one that shows the order", (0, 1e9)),
     Constant(CERTIFY, "ABOUT", MEASURED, "the same that shows it about", (0.0, 1e9)),

@@ -15,6 +15,7 @@ from fe_contact.march.impact import march
 from fe_contact.march.impacts import Followed, SurfaceBouncer, follow
 from fe_contact.progress import Counted, uncounted
 from fe_contact.settings import Numerics
+from fe_contact.steppers.flat_end import FlatEnd
 from fe_contact.steppers.steps import Strike, Work
 from fe_contact.steppers.struck import Deformable, Struck
 from fe_contact.targets.base import struck
@@ -99,10 +100,8 @@ class Runs(AnyRuns[Numerics]):
         self._works += [one.work for one in marches]
         self._radii.setdefault(settings.steps, [one.radius for one in marches])
         curves = (Curve.of(contact.march, contact.strike) for contact in followed.contacts)
-        if isinstance(surface, Deformable) and not (surface.follows_contact or self._strike.relaxation.is_elastic):
-            corners = surface.corners(settings.contact_radius)
-            curves = (calmest(curve, corners) for curve in curves)
-        self._curves[settings] = tuple(curves)
+        jitters = not (surface.follows_contact or isinstance(surface, FlatEnd) or self._strike.relaxation.is_elastic)
+        self._curves[settings] = tuple(calmest(curve) if jitters else curve for curve in curves)
         return followed
 
     def surface(self, settings: Numerics) -> Struck:

@@ -27,8 +27,6 @@ SMOOTHING = 0.07  # share of the contact over which a pointwise change counts as
 FIRST_ORDER = 1.25  # factor where order one is all that shows
 SAFETY = 1.25  # of a grid convergence index by three runs, doi:10.1115/1.2910291
 FEWEST = 24  # steps that a curve keeps: a kink and both ends want as many
-FEWEST_CROSSED = 6  # corners that tell more than steps do: a polynomial goes through as many rows
-CROSSED_SLOWLY = (3.0, np.inf)  # rows from one corner to the next above which these may tell more than corners
 AT_TOUCH = 3.0  # factor in the first step: a dashpot's force begins as the root of time, which leaves order 1/2
 UNORDERED = 2.5  # factor where no order shows: the finer of two runs errs by less than twice their distance
 
@@ -47,8 +45,7 @@ class Variation:
 
     ``weights``: what that factor is to be multiplied with for quantities that deserve less trust. ``unresolved``: time
     up to which no order shows, s; where it is not told, the first step of the second curve. ``near``: share of the
-    largest depth above which the path counts for that. ``creeps``: whether the end is where the path meets a surface
-    that creeps after it.
+    largest depth above which the path counts for that.
     """
 
     first: Curve
@@ -58,7 +55,6 @@ class Variation:
     unresolved: float | None = None
     since: float = LATE
     near: float = TOP
-    creeps: bool = False
 
     @cached_property
     def errors(self) -> dict[str, float]:
@@ -67,12 +63,13 @@ class Variation:
         What is read at one instant takes the largest change around it: a difference of two curves may cross
         zero just there, which makes neither of them right.
         """
-        first, depth = self.first, np.abs(self._depth_change)
+        first, depth = self.first, self._depth_change
+        speed = abs(first.leaving_speed) if first.separated else np.inf
         around = {
             "peak_force": self._peak_force,
             "peak_time": self._peak_time,
             "peak_depth": float(depth[first.dense.depth > self.near * first.dense.depth.max()].max()),
-            "duration": self._duration,
+            "duration": float(depth[self.late :].max()) / speed if speed > 0.0 else np.inf,
             "impulse": self.impulse,
             "restitution": self.velocity / first.strike.velocity,
         }
@@ -187,24 +184,9 @@ class Variation:
     def _force_change(self) -> Array:
         return np.abs(self.first.dense_force - self._second.force)
 
-    @cached_property
-    def _depth_change(self) -> Array:
-        return self.first.dense.depth - self._second.depth
-
     @property
-    def _duration(self) -> float:
-        """Time in which the largest change of the path late in the contact is covered, s.
-
-        Where the surface creeps, a path that is pressed deeper by a share takes it along, and both meet when they did:
-        of that the end moves by no more than this share of the duration.
-        """
-        first, change, share = self.first, self._depth_change, 0.0
-        speed = abs(first.leaving_speed) if first.separated else np.inf
-        if self.creeps:
-            turn = first.dense.depth.argmax()
-            share = change[turn] / first.dense.depth[turn]
-        late = np.abs(change - share * first.dense.depth)[self.late :].max()
-        return float(late / speed + abs(share) * first.duration) if speed > 0.0 else np.inf
+    def _depth_change(self) -> Array:
+        return np.abs(self.first.dense.depth - self._second.depth)
 
     @property
     def _peak_force(self) -> float:
@@ -257,56 +239,18 @@ class Variation:
         return np.asarray(NEAREST_QUARTIC @ (self.second.force(places) - self.first.force(places)))
 
 
-def calmest(curve: Curve, corners: Array) -> Curve:
-    """The curve that jitters least, of those evened and read at rows where the edge stands on ``corners`` (n,), m.
+def calmest(curve: Curve) -> Curve:
+    """The curve through every other of its steps as long as its force jitters less so, down to ``FEWEST`` of them.
 
-    On a mesh that stays, the edge crosses element after element: a dashpot's force, which is one of velocities, jitters
-    by the more the shorter the step is. What it jitters by is what every other step less changes. Wherever the edge
-    stands on a corner the mesh errs alike, so that from one to the next nothing jitters.
+    On a mesh that stays, the edge crosses node after node: a dashpot's force, which is one of velocities, jitters by
+    the more the shorter the step is. What it jitters by is what every other step less changes.
     """
-    even = _evened(curve)
-    crossed = _crossings(curve, corners)
-    alike = [_at_corners(curve, even, crossed, rows) for rows in CROSSED_SLOWLY]
-    return min((even, *alike), key=_jitter)
-
-
-def _evened(curve: Curve) -> Curve:
-    """Evened to every other step as long as the force jitters less so, down to ``FEWEST`` of them."""
     while len(curve.x) > 2 * FEWEST:
-        calmer = curve.evened()
-        if _jitter(calmer) >= _jitter(curve):
+        thinner = curve.thinned()
+        if Variation(thinner, thinner.thinned(), 1.0).history >= Variation(curve, thinner, 1.0).history:
             break
-        curve = calmer
+        curve = thinner
     return curve
-
-
-def _at_corners(curve: Curve, even: Curve, crossed: Array, rows: float) -> Curve:
-    """The curve read at shares ``crossed`` (n,) of the contact until so many rows of the ``even`` one lie between two;
-    from there on that one.
-    """
-    between, steps = np.diff(crossed), even.x**2
-    slowly = between > rows * np.interp(crossed[1:], steps[1:], np.diff(steps))
-    crossed = crossed[: int(np.append(slowly, True).argmax()) + 1]
-    if len(crossed) < FEWEST_CROSSED:
-        return even
-    begin, end = crossed[0] - 0.5 * (crossed[1] - crossed[0]), crossed[-1] + 0.5 * (crossed[-1] - crossed[-2])
-    before = curve.x[: max(int(np.searchsorted(curve.x**2, begin)), 1)]
-    return curve.read_at(np.concatenate([before, np.sqrt(crossed), even.x[steps > end]]))
-
-
-def _jitter(curve: Curve) -> float:
-    """What every other row less changes."""
-    return Variation(curve, curve.thinned(), 1.0).history
-
-
-def _crossings(curve: Curve, corners: Array) -> Array:
-    """Shares of the contact, ascending, at which the growing edge stands on corners, once no step passes several."""
-    top = int(curve.radius_squared.argmax()) + 1
-    squares = np.maximum.accumulate(curve.radius_squared[:top])
-    inside = corners[(corners > 0.0) & (corners**2 < squares[-1])]
-    crossed, steps = np.interp(inside**2, squares, curve.radius_x[:top] ** 2), curve.x**2
-    short = np.flatnonzero(np.diff(crossed) < np.interp(crossed[1:], steps[1:], np.diff(steps)))
-    return np.asarray(crossed[short[-1] + 1 if short.size else 0 :])
 
 
 @dataclass(frozen=True)
