@@ -24,9 +24,9 @@ class MeshTooLarge(MeshError):
     exit_code = 3
 
     def __init__(self, most: int) -> None:
-        self.most = most
-        reason = f"a mesh of more than {most} nodes, or of a quarter as many along its boundary, is not made"
-        super().__init__(f"{reason}; cure: fewer elements along a contact, a thicker body, a nearer far end")
+        self.what = f"a mesh of more than {most} nodes, or of a quarter as many along its boundary"
+        cure = "fewer elements along a contact, a thicker body, a nearer far end"
+        super().__init__(f"{self.what}, is not made; cure: {cure}")
 
 
 class MeshTooFine(MeshError):

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 Array = npt.NDArray[np.float64]
 
 MOST_NODES = 40_000  # some five seconds of gmsh, in which it answers to nothing
-MOST_ON_RIM = 10_000  # of them on the boundary: as long again, for it takes time by the square of their number
+ON_BOUNDARY = 0.25  # of them: as long again, for these take time by the square of their number
 PER_AREA = 2 / 3**0.5  # nodes of equal triangles of size h a square h
 DIGITS = 10  # of sizes: a mesh is to be the same whatever unit or machine made the sixteenth one
 COARSE = 1.5  # sides of a cell over the size of the elements in it, at most: a finer look hardly changes the sum
@@ -118,11 +118,11 @@ def tagged(nodes: Array, triangles: np.ndarray, boundaries: Mapping[str, Callabl
 def expected_nodes(size: str, outline: Outline, most: float) -> float:
     """About how many nodes a mesh of this size over (x, y), in the words of gmsh, has; infinite if clearly over most.
 
-    Also where too many of them lie on the boundary. Cells are quartered until none is much larger than the elements in
-    it; no element is larger than the box.
+    Also where more than ``ON_BOUNDARY`` of most would lie on the outline. Cells are quartered until none is much larger
+    than the elements in it; no element is larger than the box.
     """
     formula = compile(size.replace("^", "**"), "size", "eval")
-    sides, found, on_rim = outline.sides, 0.0, 0.0
+    sides, found, around = outline.sides, 0.0, 0.0
     parts = np.ceil(sides / sides.min())
     if parts.prod() > most:
         return np.inf
@@ -136,12 +136,12 @@ def expected_nodes(size: str, outline: Outline, most: float) -> float:
         area = lengths.prod() / (np.minimum(here, sides[0]) * np.minimum(here, sides[1]))
         holds = outline.holds(cells)
         rim = outline.rims(cells, lengths) / here * holds
-        on_rim += float(rim.sum())
+        around += float(rim.sum())
         found += float((PER_AREA * area * holds + 0.5 * rim).sum())
         lengths = lengths / 2
         shifts = 0.5 * lengths * np.array([[-1, 1, -1, 1], [-1, -1, 1, 1]])
         places = (places[:, coarse, None] + shifts[:, None, :]).reshape(2, -1)
-    return found if on_rim <= MOST_ON_RIM else np.inf
+    return found if around <= ON_BOUNDARY * most else np.inf
 
 
 def _grid(outline: Outline, parts: Array) -> Array:

@@ -122,8 +122,7 @@ def made(make: Callable[..., Any], *numbers: Any) -> Any:
     try:
         return make(*numbers)
     except MeshTooLarge as failure:
-        largest = f"a mesh of more than {failure.most} nodes, or of a quarter as many along its boundary"
-        raise BodyTooFine(largest, "its size is estimated first") from failure
+        raise BodyTooFine(failure.what, "its size is estimated first") from failure
 
 
 def element(order: int) -> Element:
