@@ -121,8 +121,8 @@ def compare(
     """
     from pathlib import Path
 
-    from fe_contact.methods import settings, simulate
-    from fe_contact.reference import result_of, solve
+    from fe_contact.methods import settings
+    from fe_contact.reference import answered
     from fe_contact.studies.compare.study import compare as judge
     from fe_contact.threads import one_thread
     from lumped.laws import available
@@ -132,8 +132,7 @@ def compare(
     given = settings(table, tolerance, known.source)
     curve = None if measured is None else read_curve(Path(measured))
     with one_thread:
-        solved = None if known.model.inertia else solve(known, given)
-        reference = simulate(known, "fe", given) if solved is None else result_of(known, solved)
+        reference, solved = answered(known, given)
         return judge(solved, reference, tuple(laws) or available(), curve)
 
 

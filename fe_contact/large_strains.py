@@ -15,10 +15,12 @@ from numpy.polynomial import Chebyshev
 
 from fe_contact.assembly.forms import Array, check_compressible
 from fe_contact.budget import plan as statics
+from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import AIM
+from fe_contact.budget.solved import ImpactModel, tolerance_of
 from fe_contact.indentation import COARSEST, indent, settings
 from fe_contact.progress import Progress, silent
-from fe_contact.settings import DEFAULT_TOLERANCE, Given, check_kind
+from fe_contact.settings import Given, check_kind
 from fe_contact.solids.pressing import CORRECTED, Solid, check_large
 from fe_contact.threads import one_thread
 from lumped.errors import NotReached
@@ -46,21 +48,29 @@ FINE_INTEGRATION = 1e-2  # of the tolerance
 
 
 def check_impact(scene: Scene, given: Given) -> None:
-    """Raise BadInput for an impact with large strains that is not built, and for settings of waves."""
+    """Raise BadInput for an impact with large strains that is not built, and for settings that are not for it."""
+    check_compressible(scene)
     check_kind(given, False, scene.source)
     enforcement = given.get("enforcement", CORRECTED)
     check_large(scene.source, scene.geometry, scene.model, enforcement, scene.motion.impacts)
 
 
+def plan(scene: Scene, given: Given) -> Plan:
+    """Settings and ledger as with small strains. Raises NotReached."""
+    check_impact(scene, given)
+    return statics.plan(scene, given)
+
+
+def expected(scene: Scene, given: Given) -> tuple[float, float]:
+    """Tolerance, and processor time, s, about. Raises BadInput."""
+    check_impact(scene, given)
+    return tolerance_of(given), SECONDS
+
+
 @one_thread
 def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
-    """Force history by finite elements with large strains, and error bars.
-
-    Raises BadInput for what is not built, NotReached where an equilibrium is lost.
-    """
-    check_compressible(scene)
-    check_impact(scene, given)
-    clock, tolerance = Clock(), float(given.get("tolerance", DEFAULT_TOLERANCE))
+    """Force history by finite elements with large strains, and error bars. Raises NotReached where contact is lost."""
+    clock, tolerance = Clock(), tolerance_of(given)
     deepest, asked, best = SPARE * depth_reached(scene), tolerance, None
     for _ in range(ROUNDS):
         try:
@@ -229,3 +239,6 @@ def _band(found: Result, others: Sequence[Result], relative: float, later: float
 def _apart(first: Result, second: Result) -> Array:
     """How far the forces of two impacts are apart at the rows of the first, N: late in a rebound by their durations."""
     return np.abs(first.history.force - second.history.force_at(first.history.time))
+
+
+ELASTIC = ImpactModel(check_impact, plan, expected, fe)

@@ -2,96 +2,88 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar, Generic, TypeVar
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from fe_contact.assembly.forms import check_compressible
 from fe_contact.budget import plan as statics
-from fe_contact.budget.budget import CAUSES, Budget, Solution, shares_of
+from fe_contact.budget.budget import CAUSES, shares_of
 from fe_contact.budget.certify import Certified, certify
 from fe_contact.budget.plan import Plan
-from fe_contact.budget.refine import Finer, ImpactWay, dominant, refine
+from fe_contact.budget.refine import Finer, dominant
 from fe_contact.budget.runs import operations
-from fe_contact.budget.several import Row, Several
+from fe_contact.budget.solved import ImpactModel, SolvedBy, record, solved, tolerance_of
 from fe_contact.errors import faults_of
-from fe_contact.march.impacts import UNFOLLOWED
 from fe_contact.progress import Progress, silent
 from fe_contact.recovery import indentation_left, recovers
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics, WaveNumerics, check_kind
 from fe_contact.steppers.steps import Strike
 from fe_contact.targets.base import TARGETS, seconds_of_impact, struck
 from lumped.errors import BadInput, Fault
-from lumped.numbers import Clock
-from lumped.result.result import (
-    UNITS,
-    LedgerEntry,
-    Result,
-    largest_bar,
-    meets,
-    provenance,
-    unmet,
-)
+from lumped.result.result import LedgerEntry, Result, meets
 from lumped.scene.scene import Scene
 
 if TYPE_CHECKING:
     from fe_contact.waves.targets.base import WaveTarget
 
-CURE = "cure: a larger tolerance, or fewer numerics of your own"
 ROUNDS = 4  # refinements before giving up
 MOST_STEPS = 20_000  # of all marches of a round, about half a minute; the next one may take twice as many
 MOST_OPERATIONS = 5e12  # of a round, half a minute to two: contact problems reach 5e10 to 2e11 a second
-
-Answer = TypeVar("Answer", bound=Solution, covariant=True)
-
-
-@dataclass(frozen=True)
-class SolvedBy(Generic[Answer]):
-    """A certified impact with the plan it began from; ``timing``: processor and wall time, s.
-
-    ``refused``: why no finer settings were tried that may have met the tolerance; empty where none was refused.
-    """
-
-    plan: Plan
-    certified: Answer
-    timing: Mapping[str, float]
-    refused: str
-
-    @property
-    def numerics(self) -> Numerics:
-        """The settings it ended with."""
-        return self.certified.numerics
-
 
 Solved = SolvedBy[Certified]  # without waves
 
 
 def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
-    """Force history of a scene by finite elements, with waves or without, and error bars; see :func:`solve`."""
+    """Force history of a scene by finite elements and error bars, whatever its model; see :func:`solve`."""
+    with faults_of(scene):
+        model = model_of(scene)
+        model.check(scene, given)
+        return model.fe(scene, given, progress)
+
+
+def answered(scene: Scene, given: Given, progress: Progress = silent) -> tuple[Result, Solved | None]:
+    """The same, and the certified march behind it, with its pressures; None where statics are not all."""
+    if model_of(scene) is not STATICS:
+        return fe(scene, given, progress), None
+    found = solve(scene, given, progress)
+    return result_of(scene, found), found
+
+
+def plan(scene: Scene, given: Given) -> Plan:
+    """Choose what ``given`` (checked settings, see :func:`fe_contact.settings.checked`) leaves open.
+
+    Raises NotReached where even a coarse estimate does not come to an end.
+    """
+    with faults_of(scene):
+        return model_of(scene).plan(scene, given)
+
+
+def expected(scene: Scene, given: Given) -> tuple[float, float]:
+    """Tolerance, and processor time, s, about, of :func:`fe` once packages are loaded. Raises NotReached, BadInput."""
+    with faults_of(scene):
+        return model_of(scene).expected(scene, given)
+
+
+def check(scene: Scene, given: Given) -> None:
+    """Raise BadInput for an impact that finite elements do not answer."""
+    model_of(scene).check(scene, given)
+
+
+def model_of(scene: Scene) -> ImpactModel:
+    """What answers a scene, by its model. Loaded when it is asked: most scenes are without waves, strained little."""
     if scene.model.plasticity:
-        from fe_contact.plastic import impact as yielding  # late, as all that follows: few impacts need it
+        from fe_contact.plastic.impact import YIELDING
 
-        with faults_of(scene):
-            flowed = _solved(scene, given, progress, yielding.Striking.of)
-        return result_of(scene, flowed)
-    if scene.model.finite and scene.geometry.material.young.is_elastic:
-        from fe_contact import large_strains
-
-        return large_strains.fe(scene, given, progress)
-    check(scene, given)
+        return YIELDING
     if scene.model.finite:
-        from fe_contact import relaxing_impact
+        from fe_contact.large_strains import ELASTIC
+        from fe_contact.relaxing_impact import RELAXING
 
-        with faults_of(scene):
-            marched = _solved(scene, given, progress, relaxing_impact.RelaxingStrikes)
-        return result_of(scene, marched)
-    if not scene.model.inertia:
-        solved = _solved(scene, given, progress, Statics.of)
-        return result_of(scene, solved)
-    return result_of(scene, _solved(scene, given, progress, with_waves(scene).way))
+        return ELASTIC if scene.geometry.material.young.is_elastic else RELAXING
+    return _of_waves(with_waves(scene)) if scene.model.inertia else STATICS
 
 
 def with_waves(scene: Scene) -> WaveTarget:
@@ -101,26 +93,22 @@ def with_waves(scene: Scene) -> WaveTarget:
     return WAVES.get(scene.target.name)
 
 
-def plan(scene: Scene, given: Given) -> Plan:
-    """Choose what ``given`` (checked settings, see :func:`fe_contact.settings.checked`) leaves open.
+def _of_waves(target: WaveTarget) -> ImpactModel:
+    """What answers impacts on it, or of it."""
 
-    Raises NotReached where even a coarse estimate does not come to an end.
-    """
-    with faults_of(scene):
-        if scene.model.plasticity:
-            from fe_contact.plastic import impact as yielding
-
-            return yielding.plan(scene, given)
-        if scene.model.finite:
-            from fe_contact import large_strains, relaxing_impact
-
-            large_strains.check_impact(scene, given)
-            if not scene.geometry.material.young.is_elastic:
-                return relaxing_impact.plan(scene, given)
-        if not scene.model.inertia:
-            return statics.plan(scene, given)
+    def plan(scene: Scene, given: Given) -> Plan:
         check_kind(given, True, scene.source)
-        return with_waves(scene).plan(scene, given)
+        return target.plan(scene, given)
+
+    def expected(scene: Scene, given: Given) -> tuple[float, float]:
+        chosen = plan(scene, given).numerics
+        assert isinstance(chosen, WaveNumerics)
+        return chosen.tolerance, target.cost(scene, chosen).seconds
+
+    def fe(scene: Scene, given: Given, progress: Progress) -> Result:
+        return record(scene, solved(scene, given, progress, plan, target.way))
+
+    return ImpactModel(lambda scene, _: target.check(scene), plan, expected, fe)
 
 
 def solve(scene: Scene, given: Given, progress: Progress = silent) -> Solved:
@@ -137,22 +125,14 @@ def solve(scene: Scene, given: Given, progress: Progress = silent) -> Solved:
     """
     with faults_of(scene):
         check_target(scene)
-        return _solved(scene, given, progress, Statics.of)
+        return solved(scene, given, progress, statics.plan, Statics.of)
 
 
-def _solved(
-    scene: Scene,
-    given: Given,
-    progress: Progress,
-    way_of: Callable[[Scene, Plan, Progress], ImpactWay[Answer]],
-) -> SolvedBy[Answer]:
-    clock = Clock()
-    progress("what to expect of the contact")
-    chosen = plan(scene, given)
-    way = way_of(scene, chosen, progress)
-    found, refused = refine(way, chosen.numerics)
-    chosen = replace(chosen, ledger=way.ledger(found))
-    return SolvedBy(chosen, found, clock.read(), refused)
+def result_of(scene: Scene, found: Solved) -> Result:
+    """The record of what :func:`solve` found, and of the indentation left where one impact leaves one that is known."""
+    certified = found.certified
+    left = len(certified.row) == 1 and recovers(scene, certified.curve)
+    return record(scene, found, indentation_left(certified) if left else None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,41 +190,6 @@ def _too_dear(certified: Certified, finer: Numerics) -> str:
     return ""
 
 
-def expected(scene: Scene, given: Given) -> tuple[float, float]:
-    """Tolerance, and processor time, s, about, of :func:`fe` once packages are loaded. Raises NotReached, BadInput."""
-    with faults_of(scene):
-        if scene.model.finite:
-            from fe_contact import large_strains, relaxing_impact
-
-            large_strains.check_impact(scene, given)
-            seconds = large_strains if scene.geometry.material.young.is_elastic else relaxing_impact
-            return float(given.get("tolerance", DEFAULT_TOLERANCE)), seconds.SECONDS
-        if scene.model.inertia:
-            target, chosen = with_waves(scene), plan(scene, given).numerics
-            assert isinstance(chosen, WaveNumerics)
-            return chosen.tolerance, target.cost(scene, chosen).seconds
-        tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
-        if scene.model.plasticity:
-            from fe_contact.plastic import impact as yielding
-
-            return tolerance, yielding.SECONDS
-        check_target(scene)
-        tighter = max(DEFAULT_TOLERANCE / tolerance, 1.0)
-        return tolerance, scene.motion.impacts * tighter * seconds_of_impact(scene.geometry)
-
-
-def check(scene: Scene, given: Given) -> None:
-    """Raise BadInput for an impact that finite elements do not answer."""
-    if scene.model.finite:
-        from fe_contact import large_strains
-
-        large_strains.check_impact(scene, given)
-    elif scene.model.inertia:
-        with_waves(scene).check(scene)
-    elif not scene.model.plasticity:
-        check_target(scene)
-
-
 def check_target(scene: Scene) -> None:
     """Raise BadInput for a target which no impact is marched on, and for what is found elsewhere: waves, flow."""
     geometry = scene.geometry
@@ -267,56 +212,17 @@ def check_target(scene: Scene) -> None:
         raise BadInput(Fault(scene.source, "target.material.constant", reason))
 
 
-def result_of(scene: Scene, solved: SolvedBy[Solution]) -> Result:
-    """The record of a certified impact, or of several."""
-    found, recovery = solved.certified, None
-    if isinstance(found, Several) and len(found.row) == 1 and recovers(scene, found.curve):
-        recovery = indentation_left(found)
-    if isinstance(found, Budget) and scene.model.plasticity:
-        from fe_contact.plastic import impact as yielding
-
-        recovery = yielding.dent(found)
-    if isinstance(found, Several) and scene.motion.impacts > 1:
-        found = Row(found)
-    by_quantity = {name: {cause: found.error(name, cause) for cause in CAUSES} for name in UNITS}
-    peak = found.quantities["peak_force"].value or np.inf
-    missed = _missed(scene, solved, found)
-    said = [*missed]
-    if found.grounded is not None:
-        said.append(f"contacts followed: {len(found.parts)} of {scene.motion.impacts}; {found.grounded.value}")
-    return Result(
-        method="fe",
-        converged=not missed and found.grounded not in UNFOLLOWED,
-        separated=found.separated,
-        scene=scene,
-        model=scene.model,
-        tolerance=found.numerics.tolerance,
-        history=found.history(),
-        quantities=found.quantities,
-        numerics=found.numerics.as_dict(),
-        error_budget={cause: value / peak for cause, value in by_quantity["peak_force"].items()},
-        error_budget_by_quantity=by_quantity,
-        model_ledger=solved.plan.ledger,
-        energy=found.energy,
-        energy_error=found.energy_errors,
-        provenance=provenance(),
-        timing=solved.timing,
-        work=found.counted,
-        contacts=found.contacts,
-        message="; ".join(said),
-        recovery=recovery,
-    )
+def _expected(scene: Scene, given: Given) -> tuple[float, float]:
+    """Without waves: in proportion to how much tighter than the default the tolerance is."""
+    check_target(scene)
+    tolerance = tolerance_of(given)
+    tighter = max(DEFAULT_TOLERANCE / tolerance, 1.0)
+    return tolerance, scene.motion.impacts * tighter * seconds_of_impact(scene.geometry)
 
 
-def _missed(scene: Scene, solved: SolvedBy[Solution], found: Solution) -> list[str]:
-    """What bars exceed the tolerance, what kept them from being refined, the tolerance that is met, and the cure."""
-    tolerance = found.numerics.tolerance
-    missed = [unmet(part, tolerance) for part in found.parts]
-    if scene.motion.impacts > 1:
-        missed = [f"contact {number}: {words}" for number, words in enumerate(missed, start=1) if words]
-    if not any(missed):
-        return []
-    largest = max(largest_bar(part) for part in found.parts)
-    met = 10.0 ** (math.ceil(10.0 * math.log10(largest)) / 10.0) if math.isfinite(largest) else None  # rounded up
-    said = [*missed, solved.refused, "" if met is None else f"a tolerance of {met:.2g} is met", CURE]
-    return [part for part in said if part]
+STATICS = ImpactModel(
+    lambda scene, _: check_target(scene),
+    statics.plan,
+    _expected,
+    lambda scene, given, progress: result_of(scene, solve(scene, given, progress)),
+)

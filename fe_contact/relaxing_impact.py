@@ -21,11 +21,13 @@ from fe_contact.budget.certify import LEAST_ORDER, other_mesh, other_setting
 from fe_contact.budget.curve import Curve, extrapolated
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer, dominant
+from fe_contact.budget.solved import ImpactModel, record, solved, tolerance_of
 from fe_contact.budget.variation import SAFETY, Variation, factor
 from fe_contact.errors import FINER_STEPS, MemoryTooSmall, TooManySteps
 from fe_contact.indentation import COARSEST
+from fe_contact.large_strains import check_impact
 from fe_contact.march.impact import STEPS_ALLOWED, balanced, share_of_rest, step_length, time_left
-from fe_contact.progress import Count, Counted, Progress, uncounted
+from fe_contact.progress import Count, Counted, Progress, silent, uncounted
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics
 from fe_contact.solids.base import State
 from fe_contact.solids.finite import Hyperelastic
@@ -34,7 +36,7 @@ from fe_contact.solids.pressing import MESH_ORDER, WIDENING, Solid, contact_radi
 from fe_contact.solids.relaxing import Fading, FadingLaw, doubled
 from fe_contact.steppers.steps import March, Strike, Work
 from lumped.result.model_ledger import Peak, model_ledger
-from lumped.result.result import LedgerEntry, meets
+from lumped.result.result import LedgerEntry, Result, meets
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 
@@ -269,8 +271,8 @@ def _throughout(change: Variation) -> Variation:
 
 def plan(scene: Scene, given: Given) -> Plan:
     """Settings and ledger; scales are those of small strains. Raises NotReached."""
-    known = statics.plan(scene, {})
-    tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
+    check_impact(scene, given)
+    known, tolerance = statics.plan(scene, {}), tolerance_of(given)
     elements = max(COARSEST, ELEMENTS * (DEFAULT_TOLERANCE / tolerance) ** 0.5)
     chosen = {"tolerance": tolerance, "elements_per_contact": elements, "penalty": PENALTY, **given}
     return Plan(known.numerics.varied(**chosen), frozenset(given) - {"tolerance"}, known.ledger)
@@ -324,3 +326,18 @@ class RelaxingStrikes:
     def ledger(self, found: Budget) -> tuple[LedgerEntry, ...]:
         """What the model leaves out of the impact that was found."""
         return model_ledger(self.scene, Peak.of(found.quantities, found.history()))
+
+
+def expected(scene: Scene, given: Given) -> tuple[float, float]:
+    """Tolerance, and processor time, s, about. Raises BadInput."""
+    check_impact(scene, given)
+    return tolerance_of(given), SECONDS
+
+
+def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
+    """Force history and error bars. Raises NotReached where an equilibrium is lost."""
+    found = solved(scene, given, progress, plan, RelaxingStrikes)
+    return record(scene, found)
+
+
+RELAXING = ImpactModel(check_impact, plan, expected, fe)

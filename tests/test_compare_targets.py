@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import fe_contact
 from fe_contact.cli import main
 from fe_contact.fields import check_fields, felt
 from fe_contact.reference import result_of, solve
@@ -28,6 +29,17 @@ def test_a_washer_is_compared_with_laws_on_its_own_slow_curve(tmp_path: Path) ->
     assert any(line.startswith("correspondence, ting: ") and WITHIN in line for line in content["verdict"])
     assert set(content["refused"]) == {*laws.available()} - {"correspondence", "ting"}
     assert (tmp_path / "compare.png").exists()
+
+
+@pytest.mark.tenth
+def test_a_law_of_small_strains_is_judged_by_large_ones() -> None:
+    """A thin ring that stiffens: the law's force is too low by more than the bars, at small strains it is not."""
+    large = fe_contact.compare("rod-in-ring-finite", ["ting"], tolerance=2e-2)
+    small = fe_contact.compare(large.reference.scene.changed({"model.kinematics": "small"}), ["ting"], tolerance=2e-2)
+    (strained,), (faint,) = large.judgements, small.judgements
+    assert strained.exceeds("peak_force")
+    assert (strained.errors["peak_force"] or 0.0) < 0.0
+    assert not faint.exceeds("peak_force")
 
 
 def test_the_bar_of_a_slow_curve_holds_what_lies_between_its_depths(monkeypatch: pytest.MonkeyPatch) -> None:

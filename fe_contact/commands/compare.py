@@ -12,8 +12,8 @@ from lumped.result.folder import publish
 
 def execute(args: argparse.Namespace) -> int:
     """Solve, judge, write, say the verdict; 0 or 3."""
-    from fe_contact.methods import settings, simulate
-    from fe_contact.reference import result_of, solve
+    from fe_contact.methods import settings
+    from fe_contact.reference import answered
     from fe_contact.studies.compare.chart import plot_comparison
     from fe_contact.studies.compare.study import compare, comparison_content, write_comparison
     from lumped.result.curve_file import read_curve
@@ -24,12 +24,9 @@ def execute(args: argparse.Namespace) -> int:
     measured = None if args.measured is None else read_curve(args.measured)
     remarks = () if measured is None else check_curve(measured, scene, str(args.measured))
     run = base.StudyRun.of(args, "compare", scene.name)
-    if scene.model.inertia or scene.model.plasticity:
-        solved, reference = None, simulate(scene, "fe", given, progress=run.progress)
-    else:
+    if not scene.model.inertia:
         scene.check_single("compare")
-        solved = solve(scene, given, run.progress)
-        reference = result_of(scene, solved)
+    reference, solved = answered(scene, given, run.progress)
     comparison = compare(solved, reference, names, measured, run.progress)
     content = comparison_content(comparison)
 

@@ -48,13 +48,12 @@ def _modelled(args: argparse.Namespace, scene: Scene, table: Table) -> tuple[Sce
 def _impact(args: argparse.Namespace, scene: Scene, table: Table, where: Path, taken: list[str]) -> int:
     from fe_contact.methods import settings, simulate
 
-    if args.method == "fe" and not (scene.model.inertia or scene.model.finite or scene.model.plasticity):
-        from fe_contact.reference import result_of, solve
+    if args.method == "fe":
+        from fe_contact.reference import answered
 
-        solved = solve(scene, settings(table, None, scene.source), base.progress_of(args))
-        result = result_of(scene, solved)
+        result, solved = answered(scene, settings(table, None, scene.source), base.progress_of(args))
     else:
-        solved, result = None, simulate(scene, args.method, table, progress=base.progress_of(args))
+        result, solved = simulate(scene, args.method, table, progress=base.progress_of(args)), None
     content = publish(where, lambda folder: _write(args, solved, result, folder))
     title, *lines = result.summary().split("\n  ")
     return base.report(args, result, content, [*taken, *_weighed(result), *lines], where, title)

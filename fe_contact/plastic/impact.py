@@ -17,6 +17,7 @@ from fe_contact.budget.budget import CAUSES, Budget, TotalWork, shares_of
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer
+from fe_contact.budget.solved import ImpactModel, record, solved, tolerance_of
 from fe_contact.budget.variation import Variation
 from fe_contact.errors import MemoryTooSmall
 from fe_contact.march.impact import balanced
@@ -34,12 +35,12 @@ from fe_contact.plastic.course import (
 )
 from fe_contact.plastic.indent import ROUNDS
 from fe_contact.plastic.path import Station, parting
-from fe_contact.progress import Progress
+from fe_contact.progress import Progress, silent
 from fe_contact.settings import Given, Numerics, check_kind
 from fe_contact.steppers.steps import March, Strike, Work
 from lumped.errors import BadInput, Fault
 from lumped.result.model_ledger import Peak, model_ledger
-from lumped.result.result import IndentationLeft, LedgerEntry, meets
+from lumped.result.result import IndentationLeft, LedgerEntry, Result, meets
 from lumped.scene.scene import Scene
 
 SECONDS = 12.0  # processor time of an impact to 1e-3, about
@@ -351,8 +352,7 @@ def _left(one: Variation) -> float:
 
 def plan(scene: Scene, given: Given) -> Plan:
     """Settings and ledger, by a coarse run. Raises NotReached."""
-    check_kind(given, False, scene.source)
-    check_given(given, scene.source, scene.profile)
+    check(scene, given)
     known = pilot(scene)
     radius, about = float(known.march.radius.max()), Curve.of(known.march, Strike.of(scene)).quantities
     duration, peak_time = about["duration"] or 0.0, about["peak_time"] or 0.0
@@ -364,6 +364,27 @@ def plan(scene: Scene, given: Given) -> Plan:
     )
     peak = Peak(about["peak_force"] or 0.0, about["peak_depth"] or 0.0, radius, duration)
     return Plan(numerics, frozenset(given) - {"tolerance"}, model_ledger(scene, peak))
+
+
+def check(scene: Scene, given: Given) -> None:
+    """Raise BadInput for settings that are not for what yields; what is not built, the scene refuses itself."""
+    check_kind(given, False, scene.source)
+    check_given(given, scene.source, scene.profile)
+
+
+def expected(scene: Scene, given: Given) -> tuple[float, float]:
+    """Tolerance, and processor time, s, about. Raises BadInput."""
+    check(scene, given)
+    return tolerance_of(given), SECONDS
+
+
+def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
+    """Force history, error bars and the indentation left for ever. Raises NotReached."""
+    found = solved(scene, given, progress, plan, Striking.of)
+    return record(scene, found, dent(found.certified))
+
+
+YIELDING = ImpactModel(check, plan, expected, fe)
 
 
 @dataclass(frozen=True, eq=False)

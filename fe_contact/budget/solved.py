@@ -1,0 +1,130 @@
+"""From a plan to the record of an impact: what finite elements need to know to answer one kind of model."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from fe_contact.budget.budget import CAUSES, Solution
+from fe_contact.budget.plan import Plan
+from fe_contact.budget.refine import ImpactWay, refine
+from fe_contact.budget.several import Row, Several
+from fe_contact.march.impacts import UNFOLLOWED
+from fe_contact.progress import Progress
+from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics
+from lumped.numbers import Clock
+from lumped.result.result import UNITS, IndentationLeft, Result, largest_bar, provenance, unmet
+from lumped.scene.scene import Scene
+
+CURE = "cure: a larger tolerance, or fewer numerics of your own"
+
+Answer = TypeVar("Answer", bound=Solution, covariant=True)
+AnyAnswer = TypeVar("AnyAnswer", bound=Solution)
+
+
+@dataclass(frozen=True)
+class SolvedBy(Generic[Answer]):
+    """A certified impact with the plan it began from; ``timing``: processor and wall time, s.
+
+    ``refused``: why no finer settings were tried that may have met the tolerance; empty where none was refused.
+    """
+
+    plan: Plan
+    certified: Answer
+    timing: Mapping[str, float]
+    refused: str
+
+    @property
+    def numerics(self) -> Numerics:
+        """The settings it ended with."""
+        return self.certified.numerics
+
+
+@dataclass(frozen=True)
+class ImpactModel:
+    """How finite elements answer one kind of model: without waves, with them, with large strains, with yield.
+
+    ``check(scene, given)`` raises BadInput for an impact that it does not answer; ``plan(scene, given)``: settings and
+    ledger; ``expected(scene, given)``: tolerance, and processor time, s, about, once packages are loaded;
+    ``fe(scene, given, progress)``: the force history and its bars, of a scene that was checked.
+    """
+
+    check: Callable[[Scene, Given], None]
+    plan: Callable[[Scene, Given], Plan]
+    expected: Callable[[Scene, Given], tuple[float, float]]
+    fe: Callable[[Scene, Given, Progress], Result]
+
+
+def tolerance_of(given: Given) -> float:
+    """What is asked of every ruled quantity, relative."""
+    return float(given.get("tolerance", DEFAULT_TOLERANCE))
+
+
+def solved(
+    scene: Scene,
+    given: Given,
+    progress: Progress,
+    plan: Callable[[Scene, Given], Plan],
+    way_of: Callable[[Scene, Plan, Progress], ImpactWay[AnyAnswer]],
+) -> SolvedBy[AnyAnswer]:
+    """Plan, certify, refine until the bars meet the tolerance or nothing is left to refine. Raises NotReached."""
+    clock = Clock()
+    progress("what to expect of the contact")
+    chosen = plan(scene, given)
+    way = way_of(scene, chosen, progress)
+    found, refused = refine(way, chosen.numerics)
+    chosen = replace(chosen, ledger=way.ledger(found))
+    return SolvedBy(chosen, found, clock.read(), refused)
+
+
+def record(scene: Scene, solved: SolvedBy[Solution], recovery: IndentationLeft | None = None) -> Result:
+    """The record of a certified impact, or of several, and of the indentation left where it is known."""
+    found = solved.certified
+    if isinstance(found, Several) and scene.motion.impacts > 1:
+        found = Row(found)
+    by_quantity = {name: {cause: found.error(name, cause) for cause in CAUSES} for name in UNITS}
+    peak = found.quantities["peak_force"].value or np.inf
+    missed = _missed(scene, solved, found)
+    said = [*missed]
+    if found.grounded is not None:
+        said.append(f"contacts followed: {len(found.parts)} of {scene.motion.impacts}; {found.grounded.value}")
+    return Result(
+        method="fe",
+        converged=not missed and found.grounded not in UNFOLLOWED,
+        separated=found.separated,
+        scene=scene,
+        model=scene.model,
+        tolerance=found.numerics.tolerance,
+        history=found.history(),
+        quantities=found.quantities,
+        numerics=found.numerics.as_dict(),
+        error_budget={cause: value / peak for cause, value in by_quantity["peak_force"].items()},
+        error_budget_by_quantity=by_quantity,
+        model_ledger=solved.plan.ledger,
+        energy=found.energy,
+        energy_error=found.energy_errors,
+        provenance=provenance(),
+        timing=solved.timing,
+        work=found.counted,
+        contacts=found.contacts,
+        message="; ".join(said),
+        recovery=recovery,
+    )
+
+
+def _missed(scene: Scene, solved: SolvedBy[Solution], found: Solution) -> list[str]:
+    """What bars exceed the tolerance, what kept them from being refined, the tolerance that is met, and the cure."""
+    tolerance = found.numerics.tolerance
+    missed = [unmet(part, tolerance) for part in found.parts]
+    if scene.motion.impacts > 1:
+        missed = [f"contact {number}: {words}" for number, words in enumerate(missed, start=1) if words]
+    if not any(missed):
+        return []
+    largest = max(largest_bar(part) for part in found.parts)
+    met = 10.0 ** (math.ceil(10.0 * math.log10(largest)) / 10.0) if math.isfinite(largest) else None  # rounded up
+    said = [*missed, solved.refused, "" if met is None else f"a tolerance of {met:.2g} is met", CURE]
+    return [part for part in said if part]
