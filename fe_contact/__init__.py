@@ -122,8 +122,7 @@ def compare(
     from pathlib import Path
 
     from fe_contact.methods import settings
-    from fe_contact.reference import answered
-    from fe_contact.studies.compare.study import compare as judge
+    from fe_contact.studies.compare.study import compared
     from fe_contact.threads import one_thread
     from lumped.laws import available
     from lumped.result.curve_file import read_curve
@@ -132,8 +131,7 @@ def compare(
     given = settings(table, tolerance, known.source)
     curve = None if measured is None else read_curve(Path(measured))
     with one_thread:
-        reference, solved = answered(known, given)
-        return judge(solved, reference, tuple(laws) or available(), curve)
+        return compared(known, given, tuple(laws) or available(), curve)
 
 
 def fit(

@@ -21,10 +21,11 @@ from fe_contact.progress import Progress, silent
 from fe_contact.recovery import indentation_left, recovers
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics, WaveNumerics, check_kind
 from fe_contact.steppers.steps import Strike
-from fe_contact.targets.base import TARGETS, seconds_of_impact, struck
+from fe_contact.targets.base import TARGETS, recovers_in_flight, seconds_of_impact
 from lumped.errors import BadInput, Fault
 from lumped.result.result import LedgerEntry, Result, meets
 from lumped.scene.scene import Scene
+from lumped.shapes._block import Block
 
 if TYPE_CHECKING:
     from fe_contact.waves.targets.base import WaveTarget
@@ -96,8 +97,12 @@ def with_waves(scene: Scene) -> WaveTarget:
 def _of_waves(target: WaveTarget) -> ImpactModel:
     """What answers impacts on it, or of it."""
 
-    def plan(scene: Scene, given: Given) -> Plan:
+    def check(scene: Scene, given: Given) -> None:
         check_kind(given, True, scene.source)
+        target.check(scene)
+
+    def plan(scene: Scene, given: Given) -> Plan:
+        check(scene, given)
         return target.plan(scene, given)
 
     def expected(scene: Scene, given: Given) -> tuple[float, float]:
@@ -108,7 +113,7 @@ def _of_waves(target: WaveTarget) -> ImpactModel:
     def fe(scene: Scene, given: Given, progress: Progress) -> Result:
         return record(scene, solved(scene, given, progress, plan, target.way))
 
-    return ImpactModel(lambda scene, _: target.check(scene), plan, expected, fe)
+    return ImpactModel(check, plan, expected, fe)
 
 
 def solve(scene: Scene, given: Given, progress: Progress = silent) -> Solved:
@@ -125,7 +130,7 @@ def solve(scene: Scene, given: Given, progress: Progress = silent) -> Solved:
     """
     with faults_of(scene):
         check_target(scene)
-        return solved(scene, given, progress, statics.plan, Statics.of)
+        return solved(scene, given, progress, statics.plan, Statics)
 
 
 def result_of(scene: Scene, found: Solved) -> Result:
@@ -143,13 +148,6 @@ class Statics:
     chosen: Plan
     progress: Progress
     rounds: ClassVar[int] = ROUNDS
-
-    @classmethod
-    def of(cls, scene: Scene, chosen: Plan, progress: Progress) -> Statics:
-        """Raises BadInput for several impacts on a body that does not remember by its surface alone."""
-        if scene.motion.impacts > 1 and not struck(scene.geometry, chosen.numerics).recovers:
-            scene.check_single("fe, on what remembers by its bulk or by two surfaces,")
-        return cls(scene, chosen, progress)
 
     def certified(self, numerics: Numerics) -> Certified:
         """A contact, or several, and the bars. Raises BadInput for one deeper than its bodies."""
@@ -207,9 +205,14 @@ def check_target(scene: Scene) -> None:
     if not fixed and TARGETS.get(geometry.target.name).struck is None:
         reason = f"no impact on {geometry.target.name} by finite elements in this version; accepted: indent"
         raise BadInput(Fault(scene.source, "target.shape", reason))
-    if not geometry.surface_remembers and TARGETS.get(geometry.target.name).relaxing is None:
-        reason = f'"bulk": no impact on {geometry.target.name} with it in this version; accepted: "poisson"'
-        raise BadInput(Fault(scene.source, "target.material.constant", reason))
+    bulky = TARGETS.get(geometry.target.name).relaxing is not None and not isinstance(geometry.shape, Block)
+    if not (geometry.surface_remembers or bulky):
+        pair = f"of {geometry.shape.name} on {geometry.target.name}"
+        reason = f'"bulk": no impact {pair} with it in this version; accepted: "poisson"'
+        part = "target" if geometry.target.deformable else "striker"
+        raise BadInput(Fault(scene.source, f"{part}.material.constant", reason))
+    if not recovers_in_flight(geometry):
+        scene.check_single("fe, on what remembers by its bulk or by two surfaces,")
 
 
 def _expected(scene: Scene, given: Given) -> tuple[float, float]:

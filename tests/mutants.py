@@ -289,8 +289,6 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/solids/block.py", "press", "np.min(along) ->"): GUESS,
     ("lumped/solvers/point/contact.py", "_corner", "1.0 ->"): "the unit of what is zero at a corner",
     ("fe_contact/budget/several.py", "Row._contact", "0.0 ->"): "of a peak that there is not: every contact has one",
-    ("fe_contact/reference.py", "Statics.of", "1 -> 0"): "what is refused asks again for several impacts",
-    ("fe_contact/reference.py", "Statics.of", "scene.motion.impacts > 1 and"): "asked again where it is refused",
     ("lumped/solvers/mdr/nest.py", "ALIGNING_TRIES, LEAST_SLOPE", "12 ->"): WORK,
     ("lumped/solvers/hereditary/approach.py", "_to_velocity", "3.0 ->"): GUESS,
 }

@@ -12,9 +12,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+import fe_contact
 from fe_contact.cli import main
 from fe_contact.commands.compare import law_names
 from fe_contact.reference import Solved, result_of, solve
+from fe_contact.studies.compare import study
 from fe_contact.studies.compare.chart import plot_comparison
 from fe_contact.studies.compare.deviations import Told, rebound_steps
 from fe_contact.studies.compare.law_pressure import LawPressure
@@ -184,6 +186,30 @@ def test_the_command_writes_what_it_prints(tmp_path: Path, capsys: pytest.Captur
 def test_every_unknown_law_is_named_with_the_nearest(refused: Callable[..., list[str]]) -> None:
     faults = refused("compare", "polymer-sphere", "--laws", "tong,hertz,corespondence")
     assert [fault.rpartition("did you mean ")[2] for fault in faults] == ["ting?", "correspondence?"]
+
+
+@pytest.mark.parametrize(
+    ("scene", "laws", "said"),
+    [
+        ("ball-bouncing", ["ting"], "motion.impacts: 4: compare follows one"),
+        ("polymer-sphere", ["tong"], "'tong' is not"),
+    ],
+)
+def test_python_refuses_what_the_command_does(
+    scene: str, laws: list[str], said: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Before the reference is solved, which takes a while."""
+    monkeypatch.setattr(study, "answered", lambda *_: pytest.fail("solved all the same"))
+    with pytest.raises(BadInput, match=said):
+        fe_contact.compare(scene, laws)
+
+
+def test_a_refusal_names_the_key() -> None:
+    """The value alone would say nothing."""
+    bar = Scene.load("bar-impact", {"striker.mass": 0.05})
+    with pytest.raises(BadInput) as refused:
+        simulate(laws.get("bar_waves").of(bar), bar)
+    assert study._reason("bar_waves", refused.value).startswith("no answer: striker.mass: 0.05: ")
 
 
 def test_no_law_named_is_a_fault() -> None:

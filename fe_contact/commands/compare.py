@@ -13,9 +13,8 @@ from lumped.result.folder import publish
 def execute(args: argparse.Namespace) -> int:
     """Solve, judge, write, say the verdict; 0 or 3."""
     from fe_contact.methods import settings
-    from fe_contact.reference import answered
     from fe_contact.studies.compare.chart import plot_comparison
-    from fe_contact.studies.compare.study import compare, comparison_content, write_comparison
+    from fe_contact.studies.compare.study import compared, comparison_content, write_comparison
     from lumped.result.curve_file import read_curve
     from lumped.result.gate import check_curve
 
@@ -24,10 +23,7 @@ def execute(args: argparse.Namespace) -> int:
     measured = None if args.measured is None else read_curve(args.measured)
     remarks = () if measured is None else check_curve(measured, scene, str(args.measured))
     run = base.StudyRun.of(args, "compare", scene.name)
-    if not scene.model.inertia:
-        scene.check_single("compare")
-    reference, solved = answered(scene, given, run.progress)
-    comparison = compare(solved, reference, names, measured, run.progress)
+    comparison = compared(scene, given, names, measured, run.progress)
     content = comparison_content(comparison)
 
     def write(folder: Path) -> None:
@@ -38,7 +34,7 @@ def execute(args: argparse.Namespace) -> int:
     for remark in remarks:
         base.complain(remark)
     title = f"{scene.name}: against finite elements"
-    return base.report(args, reference, content, content["verdict"], run.where, title)
+    return base.report(args, comparison.reference, content, content["verdict"], run.where, title)
 
 
 def law_names(text: str | None) -> tuple[str, ...]:

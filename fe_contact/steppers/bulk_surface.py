@@ -58,11 +58,6 @@ class BulkSurface(ByModes, Deformable):
         """Of the elastic body at one of the ratios: places, weights and scale are those of all."""
         return self.modes.operator
 
-    @property
-    def recovers(self) -> bool:
-        """Its bulk remembers."""
-        return False
-
     def unit(self, contact_radius: float) -> float:
         """The mesh's unit of length, m."""
         return contact_radius if self.length is None else self.length

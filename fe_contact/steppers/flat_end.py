@@ -45,7 +45,6 @@ class FlatEnd:
     mesh_order: float
     operator: SurfaceOperator | None = None
     follows_contact: bool = False
-    recovers: bool = True
     factorizations: int = 1
 
     @classmethod

@@ -135,11 +135,6 @@ class Stacked(Deformable):
     follows_contact: bool = False
 
     @property
-    def recovers(self) -> bool:
-        """Each side has a memory of its own."""
-        return False
-
-    @property
     def factorizations(self) -> int:
         """Of all meshes."""
         return sum(side.factorizations for side in self.sides)

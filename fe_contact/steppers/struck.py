@@ -45,17 +45,13 @@ from lumped.materials import Relaxation
 
 
 class Struck(Protocol):
-    """What is struck, with one setting of everything: ``follows_contact`` where its mesh does so, ``recovers``
-    where one surface alone remembers, so that what nothing presses is known at any time.
+    """What is struck, with one setting of everything: ``follows_contact`` where its mesh does so.
 
     ``factorizations`` and back-substitutions, ``solves``, that it took; unknowns of its meshes.
     """
 
     @property
     def follows_contact(self) -> bool: ...
-
-    @property
-    def recovers(self) -> bool: ...
 
     @property
     def factorizations(self) -> int: ...
@@ -92,11 +88,6 @@ class Deformable(Condensed):
     def body(self, relaxation: Relaxation, scheme: MemoryScheme, scale: float) -> Body:
         """The body with a contact modulus E*(t), Pa, marched by a scheme, on a mesh whose unit is ``scale``, m."""
         raise NotImplementedError
-
-    @property
-    def recovers(self) -> bool:
-        """Whether the surface goes back when nothing presses: this one does."""
-        return True
 
     @property
     def degrees_of_freedom(self) -> int:

@@ -28,7 +28,8 @@ class MeshedTarget:
     bulk that relaxes. None where there is no such impact in this version. ``whole``: with its inside what ``struck``
     knows by its surface, None where no fields are written. ``solid``: as ``still``, mesh and supports for large
     strains; None where there is none in this version. ``seconds``: processor time, s, of an impact to
-    1e-3, as measured of the packaged scenes: it tells what to expect, no more.
+    1e-3, as measured of the packaged scenes: it tells what to expect, no more. ``paired``: whether the bodies, where
+    they are finite, are pressed on two surfaces, each with a memory of its own.
     """
 
     still: Callable[[Indenter, Array, Numerics], Still]
@@ -36,6 +37,7 @@ class MeshedTarget:
     relaxing: Callable[[Geometry, Numerics], Deformable] | None = None
     whole: Callable[[Geometry, Numerics], WholeBody] | None = None
     seconds: float = 0.8
+    paired: bool = False
     solid: Callable[[Indenter, Array, Numerics], SolidMesh] | None = None
 
     @classmethod
@@ -78,6 +80,13 @@ def struck(geometry: Geometry, numerics: Numerics) -> Struck:
         return FlatEnd.of(geometry, flat, numerics, target.still)
     assert target.struck is not None
     return target.struck(geometry, numerics)
+
+
+def recovers_in_flight(geometry: Geometry) -> bool:
+    """Whether one surface remembers all: what nothing presses is then known at any time, and contacts can follow."""
+    flat = geometry.target.fixed_radius(geometry.shape) is not None
+    two = TARGETS.get(geometry.target.name).paired and geometry.target.has_length and not flat
+    return geometry.surface_remembers and not two
 
 
 def seconds_of_impact(geometry: Geometry) -> float:

@@ -5,4 +5,4 @@ from __future__ import annotations
 from fe_contact.targets import _round
 from fe_contact.targets.base import MeshedTarget
 
-MEMBER = MeshedTarget(_round.still, struck=_round.struck, relaxing=_round.relaxing)
+MEMBER = MeshedTarget(_round.still, struck=_round.struck, relaxing=_round.relaxing, paired=True)

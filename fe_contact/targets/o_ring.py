@@ -98,4 +98,4 @@ def _body(elements: float, order: int, smallest: float, contact: float, mean_rad
     return ElasticBody(basis, partial(axisymmetric, basis), fixed, crown(basis, contact, mean_radius))
 
 
-MEMBER = MeshedTarget(still, struck=struck, relaxing=relaxing, seconds=3.5, solid=solid)
+MEMBER = MeshedTarget(still, struck=struck, relaxing=relaxing, seconds=3.5, paired=True, solid=solid)

@@ -17,11 +17,8 @@ from fe_contact.assembly.operators import ElasticBody, SolidMesh, axisymmetric, 
 from fe_contact.assembly.surface import face
 from fe_contact.bodies.pressing import FINITE_REFINEMENT, Pressed, Still, held
 from fe_contact.settings import Numerics
-from fe_contact.steppers.stacked import Stacked
 from fe_contact.targets import _round
 from fe_contact.targets.base import MeshedTarget
-from lumped.errors import BadInput, Fault
-from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
 from lumped.shapes._block import Block
 
@@ -91,14 +88,6 @@ def _unit_block(poisson: float, elements: float, order: int, half_height: float,
     return BlockStill(2.0 * float(displacement @ (matrix @ displacement)), 1.0, displacement.size)
 
 
-def relaxing(geometry: Geometry, numerics: Numerics) -> Stacked:
-    """A ball of constant bulk modulus in an impact. Raises BadInput for a block that is not strained alike."""
-    if isinstance(geometry.shape, Block):
-        reason = '"bulk": no impact of a block bonded to both planes with it in this version; accepted: "poisson"'
-        raise BadInput(Fault("material", "constant", reason))
-    return _round.relaxing(geometry, numerics)
-
-
 @cached
 def _solid_block(elements: float, order: int, half_height: float, sides: str, faces: str) -> ElasticBody:
     """Of unit radius, no finer at its corners, where stresses are infinite."""
@@ -112,4 +101,4 @@ def _still_radially(sides: str, faces: str) -> tuple[str, ...]:
     return ("inside", *(("surface",) if faces == "bonded" else ()), *(() if sides == "free" else ("outside",)))
 
 
-MEMBER = MeshedTarget(still, struck=_round.struck, relaxing=relaxing, solid=solid)
+MEMBER = MeshedTarget(still, struck=_round.struck, relaxing=_round.relaxing, paired=True, solid=solid)

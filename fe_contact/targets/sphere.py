@@ -32,4 +32,4 @@ def struck(geometry: Geometry, numerics: Numerics) -> Deformable:
     return half_space.surface(geometry.material.nu, numerics)
 
 
-MEMBER = MeshedTarget(still, struck=struck, relaxing=_round.relaxing)  # a half-space's surface remembers all
+MEMBER = MeshedTarget(still, struck=struck, relaxing=_round.relaxing, paired=True)

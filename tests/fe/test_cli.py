@@ -14,6 +14,7 @@ import pytest
 
 from fe_contact.cli import main
 from fe_contact.commands import COMMANDS
+from fe_contact.reference import check
 from fe_contact.steppers import scaled_surface
 from fe_contact.targets import half_space
 from lumped import Scene, laws
@@ -382,6 +383,36 @@ def test_plan_says_from_which_depth_a_material_softens(capsys: pytest.CaptureFix
     out, err = capsys.readouterr()
     assert "left out" in out
     assert "m on the material softens" in err
+
+
+@pytest.mark.parametrize(
+    ("name", "setting"),
+    [
+        ("two-finite-spheres", "motion.impacts=2"),
+        ("polymer-o-ring", "motion.impacts=2"),
+        ("rubber-layer-bulk", "motion.impacts=2"),
+        ("polymer-plate", "striker.material={law='sls', E0=6e5, R1=0.5, R2=0.01, nu=0.45, constant='bulk'}"),
+        ("steel-ball-flight-waves", "motion.impacts=2"),
+        ("polymer-sphere-waves", "striker.velocity=8"),
+        ("polymer-sphere-waves", "striker.shape=punch"),
+        ("polymer-sphere-finite", "motion.impacts=2"),
+        ("steel-ball-plastic", "numerics.enforcement=exact"),
+    ],
+)
+def test_a_plan_says_why_a_run_is_refused(name: str, setting: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """The one line of the run, whether a law may follow the scene all the same or none can."""
+    key, reasons = setting.partition("=")[0], []
+    for command, codes in (("run", {2}), ("plan", {0, 2})):
+        assert exit_code(command, name, "--set", setting) in codes
+        reasons.append(capsys.readouterr().err.partition(f": {key}")[2])
+    assert reasons[0] == reasons[1]
+    assert reasons[0].count("\n") == 1
+
+
+def test_contacts_follow_one_another_where_one_surface_remembers() -> None:
+    """Under a flat end, and where two bodies are taken as half-spaces, one surface is all that there is."""
+    for name in ("polymer-prism", "polymer-washer", "two-spheres", "rod-in-ring", "polymer-layer"):
+        check(Scene.load(name, {"motion.impacts": 2}), {})
 
 
 def test_plan_speaks_first_of_the_cheapest_method(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -165,7 +165,7 @@ def _pressure(axes: Axes, comparison: Comparison) -> None:
 def _without_pressure(solved: Solved | None) -> str:
     """Why there is no pressure to show."""
     if solved is None:
-        return "with waves the history alone is compared"
+        return "with waves, yield or large strains\nthe history alone is compared"
     told = solved.certified.march.snapshots
     return "no rebound before the end of the history" if told else "under a flat end: that of the indentation"
 

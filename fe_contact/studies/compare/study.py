@@ -17,7 +17,8 @@ from fe_contact.budget.plan import has_curve
 from fe_contact.budget.variation import factor
 from fe_contact.indentation import indent
 from fe_contact.progress import Progress, silent
-from fe_contact.reference import Solved
+from fe_contact.reference import Solved, answered
+from fe_contact.settings import Given
 from fe_contact.studies.compare.deviations import (
     NestedAreas,
     Told,
@@ -83,7 +84,8 @@ class Judgement:
 class Comparison:
     """Reference, candidates and judgements; ``refused`` maps laws without an answer to the reason.
 
-    ``solved``: the reference's steps with their pressures, None with inertia, where its history tells all.
+    ``solved``: the reference's steps with their pressures, None where its history alone is told: with inertia, yield or
+    large strains.
 
     ``nested``: whether the contact goes back through the areas it came through, which Ting's solution supposes.
     """
@@ -99,6 +101,26 @@ class Comparison:
 
     def __repr__(self) -> str:
         return "\n  ".join([f"{self.reference.scene.name}: against {self.reference.method}", *verdicts(self)])
+
+
+def compared(
+    scene: Scene,
+    given: Given,
+    names: tuple[str, ...],
+    measured: Measured | None = None,
+    progress: Progress = silent,
+) -> Comparison:
+    """A scene, answered with checked settings, against lumped laws and a measured curve.
+
+    Raises, before anything is solved, BadInput for an unknown law and for several impacts without inertia, and what
+    finite elements raise.
+    """
+    for name in names:
+        get(name)
+    if not scene.model.inertia:
+        scene.check_single("compare")
+    reference, solved = answered(scene, given, progress)
+    return compare(solved, reference, names, measured, progress)
 
 
 def compare(
@@ -193,8 +215,11 @@ def verdicts(comparison: Comparison) -> tuple[str, ...]:
 
 def _reason(name: str, failure: FeContactError) -> str:
     """Why a law has no answer, without its own name and without what would be accepted: no one asked to change that."""
-    said = failure.faults[0].message.partition("; accepted")[0] if isinstance(failure, BadInput) else str(failure)
-    return said.removeprefix(f"{name} is ") if said.startswith(f"{name} is ") else f"no answer: {said}"
+    if not isinstance(failure, BadInput):
+        return f"no answer: {failure}"
+    fault = failure.faults[0]
+    said = fault.message.partition("; accepted")[0]
+    return said.removeprefix(f"{name} is ") if said.startswith(f"{name} is ") else f"no answer: {fault.key}: {said}"
 
 
 def judged(comparison: Comparison) -> tuple[str, ...]:

@@ -26,7 +26,7 @@ FASTEST = 0.3  # of the speed of shear waves: beyond, strains are not small anyw
 
 @dataclass(frozen=True)
 class WaveTarget:
-    """``check(scene)`` raises BadInput for a scene it is not for; ``plan(scene, given)``: the settings chosen;
+    """``check(scene)`` raises BadInput for a scene it is not for; ``plan(scene, given)``: settings chosen for another;
     ``cost(scene, numerics)``: what an error budget with them takes; ``way(scene, chosen, progress)``: how it is solved;
     ``write_fields(scene, result, where)``: its fields at the peak, None where there are none in this version.
     """

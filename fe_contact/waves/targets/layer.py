@@ -48,7 +48,6 @@ def plan(scene: Scene, given: Given) -> Plan:
 
     Raises NotReached where even that does not come to an end, BadInput for a contact beyond its load curve.
     """
-    check(scene)
     check_compressible(scene)
     size = scales(scene, WaveNumerics(**DEFAULTS, **ROUGH))
     return placed(scene, given, size, _far_radius(scene, size), SPARE, _stiffness(scene, size))

@@ -57,7 +57,6 @@ PRECISE = 1e-13  # of the overlap
 
 def plan(scene: Scene, given: Given) -> Plan:
     """Choose what ``given`` (checked settings) leaves open."""
-    check(scene)
     rod = scene.target
     assert isinstance(rod, Rod)
     tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
