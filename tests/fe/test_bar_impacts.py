@@ -169,6 +169,8 @@ def test_the_first_echo_of_a_rigid_mass_trebles_the_force(mass: float) -> None:
     result = fe_contact.run(scene, tolerance=0.1, numerics={"steps": 400})
     force = result.history.force_at(np.array([0.3, 0.6]))
     np.testing.assert_allclose(force, 300.0, rtol=1e-6)
+    sides = result.history.force_at(ECHO * np.array([1.0 - 1e-9, 1.0 + 1e-9]))
+    np.testing.assert_allclose(sides, [300.0, 900.0], rtol=1e-3, err_msg="before and behind the front")
     assert covers(result, "peak_force", 900.0)
     assert result.quantities["peak_force"].value == pytest.approx(900.0, rel=0.03)
     assert result.quantities["peak_time"].value == pytest.approx(ECHO, rel=0.01)
