@@ -11,9 +11,12 @@ import numpy as np
 import pytest
 from scipy.special import beta, betainc
 
+from fe_contact import relaxing_impact
 from fe_contact.budget import certify
 from fe_contact.budget.budget import CAUSES, SETTING, Budget
 from fe_contact.budget.curve import Curve
+from fe_contact.budget.variation import Variation
+from fe_contact.relaxing_impact import RelaxingStrikes
 from fe_contact.settings import Numerics, WaveNumerics
 from fe_contact.steppers.steps import March, Strike, Work
 from fe_contact.waves import certify as waves
@@ -120,6 +123,55 @@ def test_an_entry_covers_its_own_setting_where_there_are_waves(cause: str, power
     for name in QUANTITIES:
         assert errors[name] <= found.error(name, cause), name
         assert found.error(name, cause) < 3.0 * errors[name], name
+
+
+RELAXING = [("mesh", 1.5), ("penalty", 1.0), ("time_step", 3.0), ("far_field", 2.0)]
+
+
+@pytest.mark.parametrize(("cause", "power"), RELAXING)
+def test_an_entry_covers_its_own_setting_of_a_body_strained_much_that_relaxes(
+    cause: str, power: float, settings: Numerics, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And the square of the step is extrapolated away."""
+    nothing: Any = None
+
+    def certified(answer: Callable[[Any], March]) -> Budget:
+        monkeypatch.setattr(RelaxingStrikes, "_run", lambda self, given: answer(given))
+        return RelaxingStrikes(nothing, nothing, nothing).certified(settings)
+
+    monkeypatch.setattr(relaxing_impact, "Strike", SimpleNamespace(of=lambda scene: STRIKE))
+    solid = SimpleNamespace(solid=SimpleNamespace(unknowns=1))
+    monkeypatch.setattr(relaxing_impact, "Marcher", SimpleNamespace(of=lambda scene, given: solid))
+    found = certified(marched(cause, power, settings))
+    errors = off(found.curve)
+    for name in QUANTITIES:
+        assert errors[name] <= found.error(name, cause) < 4.0 * errors[name], name
+        assert all(found.error(name, other) < 0.2 * errors[name] for other in CAUSES if other != cause), name
+    left = off(certified(marched("time_step", 2.0, settings)).curve)
+    assert max(left.values()) < 1e-2 * ERROR
+
+
+@pytest.mark.parametrize(
+    ("separated", "gravity", "finer_mesh"), [(False, 0.05, False), (False, 0.0, True), (True, 0.05, True)]
+)
+def test_a_jitter_that_no_step_lessens_asks_for_a_finer_mesh_but_of_what_swings(
+    separated: bool, gravity: float, finer_mesh: bool, settings: Numerics
+) -> None:
+    """What a weight swings for long lies between few steps, whatever the mesh."""
+    rng, strike = np.random.default_rng(13), replace(STRIKE, gravity=gravity)
+    noise = {STEPS // part: 1.0 + 1e-3 * rng.normal(size=STEPS // part + 1) for part in (1, 2, 4)}
+
+    def curve(number: int, given: Any) -> Curve:
+        found = march(given.steps, 0.0)
+        jittering = replace(found, impulse=found.impulse * noise[given.steps], separated=separated)
+        return Curve.of(jittering, strike)
+
+    runs: Any = SimpleNamespace(curve=curve, surface=lambda given: SimpleNamespace(follows_contact=True))
+    value, changes = certify._judged(runs, 0, settings, alone=False)
+    nothing: Any = None
+    found = Budget(value, nothing, changes, nothing, nothing)
+    assert (found.error("impulse", "mesh") > 0.0) == finer_mesh, "two meshes jitter alike here"
+    assert found.total("impulse") > Variation(value, value.thinned(), 1.0).errors["impulse"]
 
 
 @pytest.mark.parametrize("steps", [20, 160])
