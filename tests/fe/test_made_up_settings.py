@@ -109,9 +109,10 @@ def test_an_entry_covers_its_own_setting_where_there_are_waves(cause: str, power
     """Contact that begins and ends point by point leaves half of an error where there is half of a setting."""
     fine = {"elements_per_contact": 12.0, "steps": 640, "tolerance": 1e-4}
     base = WaveNumerics(**{**settings.as_dict(), **fine}, rho=0.5, mass="consistent")
-    answer = marched(cause, power, base)
+    answer, asked = marched(cause, power, base), list[WaveNumerics]()
 
     def curve(number: int, given: WaveNumerics) -> Curve:
+        asked.append(given)
         return Curve.of(answer(given), STRIKE)
 
     contact = SimpleNamespace(march=answer(base), strike=STRIKE)
@@ -123,6 +124,8 @@ def test_an_entry_covers_its_own_setting_where_there_are_waves(cause: str, power
     for name in QUANTITIES:
         assert errors[name] <= found.error(name, cause), name
         assert found.error(name, cause) < 3.0 * errors[name], name
+    nearer = [given.elements_per_contact for given in asked if given.far_radius < base.far_radius]
+    assert nearer == [min(given.elements_per_contact for given in asked)], "told by the cheaper mesh, once"
 
 
 RELAXING = [("mesh", 1.5), ("penalty", 1.0), ("time_step", 3.0), ("far_field", 2.0)]
