@@ -356,11 +356,12 @@ def _trusted_order(fine: Curve, half: Curve, quarter: Curve, order: int) -> int:
 
 
 def _order_of_duration(fine: Curve, half: Curve, quarter: Curve, order: int) -> int:
-    """Order to trust of the duration: where the fewest steps err by more than a per cent, only what it shows."""
+    """Order to trust of the duration: one more than it shows; where the fewest steps err by a per cent, no more."""
     first, second, third = (curve.quantities["duration"] for curve in (fine, half, quarter))
-    if first is None or second is None or third is None or abs(third - second) <= ASYMPTOTIC * first:
+    if first is None or second is None or third is None:
         return order + 1
-    return order if abs(third - second) >= NEARLY * 2**order * abs(second - first) else 1
+    shown = order if abs(third - second) >= NEARLY * 2**order * abs(second - first) else 1
+    return shown + (abs(third - second) <= ASYMPTOTIC * first)
 
 
 def _shares(curve: Curve, fast: npt.NDArray[np.bool_]) -> tuple[float, float]:
