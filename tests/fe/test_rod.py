@@ -154,6 +154,16 @@ def test_a_front_ends_a_contact_whose_force_would_have_gone_on(late: int, left: 
     assert not _ended_by(force[front - 2 :], 2), "what so few steps tell"
 
 
+@pytest.mark.parametrize("name", ["rod", "rod-free", "rod-absorbing"])
+def test_a_rod_without_mass_at_its_struck_end_has_all_of_it_elsewhere(name: str) -> None:
+    """Moved as a whole it resists with its mass, less what a held end bears; the striker keeps its own."""
+    scene = Scene.load(name)
+    body = rod.moving(scene, rod.plan(scene, {"mass": "redistributed"}).numerics).body
+    assert body.massless.tolist() == [0]
+    held = 0.5 * rod.rod_mass(scene) / (body.size - 1) if name == "rod" else 0.0
+    assert body.inertia.sum() == pytest.approx(scene.reduced_mass + rod.rod_mass(scene) - held)
+
+
 def test_a_weight_pulls_until_the_very_end() -> None:
     """Contact ends within a step: what left at that step's end had fallen on, and no change of steps told."""
     striker = {"shape": "sphere", "radius": 2.3e-3, "mass": 4.6e-4, "velocity": 6.7e-3}
