@@ -250,7 +250,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/steppers/flat_end.py", "TOUCHING", ""): "what a flat end has instead of a contact problem",
     ("fe_contact/budget/curve.py", "DENSE", ""): "which of two sets of places, both dense, a curve is looked at",
     ("fe_contact/budget/curve.py", "EARLIEST", ""): "which of two sets of places, both dense, a curve is looked at",
-    ("fe_contact/budget/variation.py", "Variation._about_peak", "1 -> 2"): "one dense place further: 2 % of a median bar",
+    ("fe_contact/budget/variation.py", "Variation._about_peak", "1 -> 2"): "a dense place on: 2 % of a median bar",
     ("fe_contact/budget/variation.py", "Variation.errors", "if speed"): "a guard against dividing by zero itself",
     ("fe_contact/budget/variation.py", "Variation.energies", "0.5 * speed"): "the square of a small error",
     ("fe_contact/steppers/steps.py", "Inertia.moved", "strike.end_time - state.time"): "an end time but for rounding",
