@@ -69,7 +69,7 @@ DAMPED_ANYWHERE = {"duration": 8.0, "restitution": 3.0, "impulse": 3.0}
 NODEWISE_ANYWHERE = {**DAMPED_ANYWHERE, "peak_depth": 2.0}
 DAMPED_SINCE = 0.5  # share of the contact from which path and speed count there: the end alone may agree by chance
 # of the steps' change in the share that branches about as fast as a step carry, by quantity, and of the force
-KEPT = {"peak_depth": 0.4, "duration": 0.4, "impulse": 1.5, "restitution": 1.5}
+KEPT = {"peak_depth": 0.4, "duration": 0.4, "impulse": 2.5, "restitution": 2.5}
 KEPT_OF_FORCE = 0.1  # the same share of the force
 LEAST_HALVED = 40  # steps below which halving them twice would leave too few to tell anything
 # half of less tells nothing: a corrected penalty below a hundred errs to either side in turn
@@ -356,11 +356,12 @@ def _trusted_order(fine: Curve, half: Curve, quarter: Curve, order: int) -> int:
 
 
 def _order_of_duration(fine: Curve, half: Curve, quarter: Curve, order: int) -> int:
-    """Order to trust of the duration: where the fewest steps err by more than a per cent, only what it shows."""
+    """Order to trust of the duration: one more than it shows; where the fewest steps err by a per cent, no more."""
     first, second, third = (curve.quantities["duration"] for curve in (fine, half, quarter))
-    if first is None or second is None or third is None or abs(third - second) <= ASYMPTOTIC * first:
+    if first is None or second is None or third is None:
         return order + 1
-    return order if abs(third - second) >= NEARLY * 2**order * abs(second - first) else 1
+    shown = order if abs(third - second) >= NEARLY * 2**order * abs(second - first) else 1
+    return shown + (abs(third - second) <= ASYMPTOTIC * first)
 
 
 def _shares(curve: Curve, fast: npt.NDArray[np.bool_]) -> tuple[float, float]:

@@ -186,6 +186,16 @@ def test_a_finer_run_is_within_both_bars(polymer: tuple[lumped.Scene, lumped.Res
     assert fine.contacts[1]["restitution_error"] < 0.5 * coarse.contacts[1]["restitution_error"]
 
 
+def test_one_impact_is_told_as_the_first_of_several_but_without_a_row_of_them(
+    scene_of: Scenes, polymer: tuple[lumped.Scene, lumped.Result]
+) -> None:
+    one, first = fe_contact.run(thrown(scene_of, SLS, 1), tolerance=1e-3), polymer[1].contacts[0]
+    assert one.contacts == ()
+    for name in ("duration", "restitution", "peak_force", "peak_depth"):
+        quantity = one.quantities[name]
+        assert quantity.value == pytest.approx(first[name], abs=quantity.error + first[f"{name}_error"])
+
+
 def test_the_history_of_several_contacts_is_no_distance_from_itself(
     polymer: tuple[lumped.Scene, lumped.Result],
 ) -> None:

@@ -167,6 +167,8 @@ def test_a_quantity_of_all_contacts_is_told_by_one_of_them_or_by_their_sum(row: 
     assert all_of["impulse"].error == pytest.approx(causes * sum(one.error("impulse", "") for one in row.budgets))
     assert all_of["history_l2"].value == 0.0
     assert all_of["history_l2"].error == pytest.approx(causes * 3e-3), "that of the worst"
+    for name, quantity in all_of.items():
+        assert sum(row.error(name, cause) for cause in CAUSES) == pytest.approx(quantity.error), "its causes"
 
 
 def test_what_still_presses_gives_nothing_back_and_has_no_bar_of_that(row: Row) -> None:

@@ -129,6 +129,12 @@ def test_three_marches_tell_all(monkeypatch: pytest.MonkeyPatch) -> None:
     assert work.contact_problems == work.iterations == work.steps
 
 
+def test_a_block_is_pressed_as_a_whole() -> None:
+    """One back-substitution a mesh, of which there are two: a block has no far field."""
+    work = solve(Scene.load("polymer-prism"), {"tolerance": 0.1}).certified.work
+    assert work.solves == work.factorizations == 2
+
+
 def test_a_confined_plate_of_constant_bulk_modulus_relaxes_by_its_shear_alone(agree: Callable[..., None]) -> None:
     """M(t) = K + 4/3 G(t) by hand: as a prism of nu = 0 whose Young's modulus relaxes so."""
     rng = np.random.default_rng(11)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from types import SimpleNamespace
@@ -11,9 +12,12 @@ import numpy as np
 import pytest
 from scipy.special import beta, betainc
 
+from fe_contact import relaxing_impact
 from fe_contact.budget import certify
 from fe_contact.budget.budget import CAUSES, SETTING, Budget
 from fe_contact.budget.curve import Curve
+from fe_contact.budget.variation import Variation
+from fe_contact.relaxing_impact import RelaxingStrikes
 from fe_contact.settings import Numerics, WaveNumerics
 from fe_contact.steppers.steps import March, Strike, Work
 from fe_contact.waves import certify as waves
@@ -106,9 +110,10 @@ def test_an_entry_covers_its_own_setting_where_there_are_waves(cause: str, power
     """Contact that begins and ends point by point leaves half of an error where there is half of a setting."""
     fine = {"elements_per_contact": 12.0, "steps": 640, "tolerance": 1e-4}
     base = WaveNumerics(**{**settings.as_dict(), **fine}, rho=0.5, mass="consistent")
-    answer = marched(cause, power, base)
+    answer, asked = marched(cause, power, base), list[WaveNumerics]()
 
     def curve(number: int, given: WaveNumerics) -> Curve:
+        asked.append(given)
         return Curve.of(answer(given), STRIKE)
 
     contact = SimpleNamespace(march=answer(base), strike=STRIKE)
@@ -120,6 +125,60 @@ def test_an_entry_covers_its_own_setting_where_there_are_waves(cause: str, power
     for name in QUANTITIES:
         assert errors[name] <= found.error(name, cause), name
         assert found.error(name, cause) < 3.0 * errors[name], name
+    nearer = [given.elements_per_contact for given in asked if given.far_radius < base.far_radius]
+    assert nearer == [min(given.elements_per_contact for given in asked)], "told by the cheaper mesh, once"
+
+
+RELAXING = [("mesh", 1.5), ("penalty", 1.0), ("time_step", 3.0), ("far_field", 2.0)]
+
+
+@pytest.mark.parametrize(("cause", "power"), RELAXING)
+def test_an_entry_covers_its_own_setting_of_a_body_strained_much_that_relaxes(
+    cause: str, power: float, settings: Numerics, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And the square of the step is extrapolated away, but for a logarithm beside it, which leaves it as it was."""
+    nothing: Any = None
+
+    def certified(answer: Callable[[Any], March]) -> Budget:
+        monkeypatch.setattr(RelaxingStrikes, "_run", lambda self, given: answer(given))
+        return RelaxingStrikes(nothing, nothing, nothing).certified(settings)
+
+    monkeypatch.setattr(relaxing_impact, "Strike", SimpleNamespace(of=lambda scene: STRIKE))
+    solid = SimpleNamespace(solid=SimpleNamespace(unknowns=1))
+    monkeypatch.setattr(relaxing_impact, "Marcher", SimpleNamespace(of=lambda scene, given: solid))
+    found = certified(marched(cause, power, settings))
+    errors = off(found.curve)
+    for name in QUANTITIES:
+        assert errors[name] <= found.error(name, cause) < 4.0 * errors[name], name
+        assert all(found.error(name, other) < 0.2 * errors[name] for other in CAUSES if other != cause), name
+    left = off(certified(marched("time_step", 2.0, settings)).curve)
+    assert max(left.values()) < 1e-2 * ERROR
+    found = certified(lambda given: march(given.steps, ERROR * (STEPS / given.steps) ** 2 * math.log(given.steps)))
+    for name, error in off(found.curve).items():
+        assert error <= found.error(name, "time_step") < 2.0 * error, name
+
+
+@pytest.mark.parametrize(
+    ("separated", "gravity", "finer_mesh"), [(False, 0.05, False), (False, 0.0, True), (True, 0.05, True)]
+)
+def test_a_jitter_that_no_step_lessens_asks_for_a_finer_mesh_but_of_what_swings(
+    separated: bool, gravity: float, finer_mesh: bool, settings: Numerics
+) -> None:
+    """What a weight swings for long lies between few steps, whatever the mesh."""
+    rng, strike = np.random.default_rng(13), replace(STRIKE, gravity=gravity)
+    noise = {STEPS // part: 1.0 + 1e-3 * rng.normal(size=STEPS // part + 1) for part in (1, 2, 4)}
+
+    def curve(number: int, given: Any) -> Curve:
+        found = march(given.steps, 0.0)
+        jittering = replace(found, impulse=found.impulse * noise[given.steps], separated=separated)
+        return Curve.of(jittering, strike)
+
+    runs: Any = SimpleNamespace(curve=curve, surface=lambda given: SimpleNamespace(follows_contact=True))
+    value, changes = certify._judged(runs, 0, settings, alone=False)
+    nothing: Any = None
+    found = Budget(value, nothing, changes, nothing, nothing)
+    assert (found.error("impulse", "mesh") > 0.0) == finer_mesh, "two meshes jitter alike here"
+    assert found.total("impulse") > Variation(value, value.thinned(), 1.0).errors["impulse"]
 
 
 @pytest.mark.parametrize("steps", [20, 160])

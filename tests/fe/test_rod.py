@@ -14,6 +14,7 @@ from fe_contact.cli import main
 from fe_contact.contact.problem import ContactProblem, PressedSurface
 from fe_contact.methods import simulate
 from fe_contact.studies.compare.study import WITHIN
+from fe_contact.waves.line_reading import _ended_by
 from fe_contact.waves.targets import rod
 from lumped import BadInput, Result, Scene, laws
 from lumped.load_curves.hertz import Hertz
@@ -139,6 +140,28 @@ def test_steps_that_agree_by_chance_make_no_bar_too_small(uncovered: Callable[..
     for steps in range(500, 1000, 20):
         found = simulate(scene, "fe", {"steps": steps, "tolerance": 0.1})
         assert not uncovered(found, truth), steps
+
+
+@pytest.mark.parametrize("late", [0, 1, 3])
+@pytest.mark.parametrize("left", [0.2, 0.4, 0.6, 0.9])
+def test_a_front_ends_a_contact_whose_force_would_have_gone_on(late: int, left: float) -> None:
+    """Where it opens at once, and the force, which falls evenly, would have been more than half as large by then."""
+    front = 10
+    even = 1.0 - (1.0 - left) / (late + 1) * (np.arange(front + late + 1) - (front - 1))
+    force = np.where(np.arange(even.size) < front, even, 0.0)
+    assert _ended_by(force, front) == (left > 0.5)
+    assert not _ended_by(np.append(force, np.zeros(4)), front), "it opened later"
+    assert not _ended_by(force[front - 2 :], 2), "what so few steps tell"
+
+
+@pytest.mark.parametrize("name", ["rod", "rod-free", "rod-absorbing"])
+def test_a_rod_without_mass_at_its_struck_end_has_all_of_it_elsewhere(name: str) -> None:
+    """Moved as a whole it resists with its mass, less what a held end bears; the striker keeps its own."""
+    scene = Scene.load(name)
+    body = rod.moving(scene, rod.plan(scene, {"mass": "redistributed"}).numerics).body
+    assert body.massless.tolist() == [0]
+    held = 0.5 * rod.rod_mass(scene) / (body.size - 1) if name == "rod" else 0.0
+    assert body.inertia.sum() == pytest.approx(scene.reduced_mass + rod.rod_mass(scene) - held)
 
 
 def test_a_weight_pulls_until_the_very_end() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterator
 from dataclasses import dataclass
 from types import ModuleType, SimpleNamespace
 from typing import Any
@@ -17,7 +19,8 @@ from fe_contact.bodies.pressing import EDGE_WINDOW
 from fe_contact.budget.plan import plan
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactSolution
-from fe_contact.steppers.scaled_surface import ScaledSurface, _missed
+from fe_contact.errors import ContactLost
+from fe_contact.steppers.scaled_surface import ScaledSurface, Stepper, _missed
 from fe_contact.targets import half_space
 from lumped import Relaxation
 from lumped.shapes import Parabola, Shape, Sphere
@@ -223,3 +226,68 @@ def test_what_a_straight_line_misses_is_the_faded_rest_of_how_a_gap_closes(ratio
         for ratio, one in zip(ratios, missed, strict=True):
             exact = -ratio * np.mean(np.exp(-ratio * (1.0 - shares)) * detour)
             assert one == pytest.approx(exact, abs=5e-3 * ratio * first), (place, ratio)
+
+
+class Settling:
+    """A mesh scaled until the contact found on it ends where it is finest: what is found there is made up.
+
+    ``edges``: of the contact, on the unit mesh, attempt after attempt.
+    """
+
+    def __init__(self, edges: Iterator[float], steps: int = 1) -> None:
+        self.tried = list[float]()
+        scale = 0.1
+        points = np.linspace(0.05, 4.0, 80)
+
+        def enforce(problem: Any, *guesses: Any) -> Any:
+            self.tried.append(next(edges))
+            edge = self.tried[-1]
+            return SimpleNamespace(converged=True, iterations=3, sets=(points < edge,), edge=lambda at: edge)
+
+        stepper: Any = SimpleNamespace(
+            surface=SimpleNamespace(operator=SimpleNamespace(points=points), problem=lambda *of: None),
+            radii=np.array([0.0, 1e3]),
+            strike=SimpleNamespace(height=lambda radii: 0.5 * radii**2),
+            numerics=SimpleNamespace(penalty=1.0, contact_radius=scale),
+            enforcement=SimpleNamespace(enforce=enforce, solves=2),
+            _expected_radius=lambda *of: scale,
+            _guesses=lambda steps: (),
+            _centred=lambda solution: (),
+        )
+        inertia: Any = SimpleNamespace(state=SimpleNamespace(time=0.0), free_depth=0.01, give=0.0, length=1.0)
+        law: Any = SimpleNamespace(now=1.0)
+        before: Any = [SimpleNamespace(radius=scale)] * steps
+        self.run = lambda: Stepper._settle(stepper, inertia, before, law, np.zeros(2))
+
+
+@pytest.mark.parametrize("off", [0.019, -0.019])
+def test_a_contact_that_ends_within_two_hundredths_of_the_finest_place_is_settled(off: float) -> None:
+    """At once; one a little further off once more, on a mesh that is as much wider or narrower."""
+    settled = Settling(iter([1.0 + off]))
+    scale, edge, _, work = settled.run()
+    assert (scale, edge) == (0.1, 1.0 + off)
+    assert (work.contact_problems, work.steps, work.iterations) == (2, 1, 3)
+    settled = Settling(iter([1.0 + 1.2 * off, 1.0]))
+    scale, edge, _, work = settled.run()
+    assert scale == pytest.approx(0.1 * (1.0 + 1.2 * off))
+    assert (edge, work.contact_problems, work.iterations) == (1.0, 4, 6)
+
+
+def test_an_edge_that_jitters_is_settled_once_it_does_so_by_a_little_more_than_it_may() -> None:
+    """From the ninth rescaling on the window widens by half each time: what jitters less and less is not hurried."""
+    settled = Settling(1.0 + 0.5 * 0.8**number * (-1) ** number for number in range(60))
+    _, edge, _, _ = settled.run()
+    assert 9 < len(settled.tried) <= 13
+    assert abs(edge - 1.0) < 0.05
+    settled = Settling(itertools.cycle([1.1, 1.0 / 1.1]))
+    settled.run()
+    assert len(settled.tried) <= 14, "one that does not cease is settled too"
+
+
+@pytest.mark.parametrize(("steps", "smallest"), [(1, 1e-4), (0, 1e-8)])
+def test_a_contact_that_only_shrinks_is_lost(steps: int, smallest: float) -> None:
+    """By three tenths at once at most: at a ten thousandth of its last radius; a first one, hardly known, later."""
+    settled = Settling(itertools.repeat(0.1), steps)
+    with pytest.raises(ContactLost):
+        settled.run()
+    assert 0.3 ** len(settled.tried) < smallest <= 0.3 ** (len(settled.tried) - 1)

@@ -61,3 +61,30 @@ def test_two_meshes_that_agree_by_chance_where_the_path_turns_are_not_believed(
     ring = {"shape": "ring", "inner_radius": 0.0077783553263812725, "thickness": 0.002635512347519187}
     scene = Scene.from_dict({"name": "by-chance", "striker": striker, "target": ring | {"material": material}})
     assert not uncovered(fe_contact.run(scene, 1e-2), simulate(laws.ting.of(scene), scene, 1e-6))
+
+
+def test_what_a_branch_as_long_as_the_steps_leaves_lies_within_bars_that_are_tight() -> None:
+    """Twelve times as stiff as what lasts, met in a sweep: three lengths of step agree too well in what adds up."""
+    striker = {"shape": "sphere", "radius": 0.01, "mass": 0.02, "velocity": 0.1}
+    material = {"law": "prony", "E_inf": 1e6, "E": [1.24e7], "tau": [2.86e-5], "nu": 0.3}
+    target = {"shape": "half_space", "material": material}
+    scene = Scene.from_dict({"name": "as-long", "striker": striker, "target": target})
+    found = fe_contact.run(scene, 0.1, numerics={"steps": 64}).quantities
+    exact = simulate(laws.ting.of(scene), scene, 1e-8).quantities
+    for name, widest in {"peak_depth": 4.0, "impulse": 4.0, "restitution": 4.0, "duration": 60.0}.items():
+        off = abs(found[name].value - exact[name].value)
+        assert off <= found[name].error < widest * off, name
+
+
+@pytest.mark.parametrize(("velocity", "young", "time"), [(0.0135, 5.48e6, 1.27e-3), (0.011, 4.24e6, 1.39e-3)])
+def test_a_duration_that_shows_less_than_the_order_of_the_force_is_trusted_less(
+    velocity: float, young: float, time: float
+) -> None:
+    """A branch that relaxes in six steps: its 40, 20 and 10 steps show an order of 1.4 of the duration alone."""
+    striker = {"shape": "sphere", "radius": 0.01, "mass": 0.02, "velocity": velocity}
+    material = {"law": "prony", "E_inf": 1e6, "E": [young], "tau": [time], "nu": 0.3}
+    target = {"shape": "half_space", "material": material}
+    scene = Scene.from_dict({"name": "six-steps", "striker": striker, "target": target})
+    found = fe_contact.run(scene, 1e-2).quantities["duration"]
+    off = abs(found.value - simulate(laws.ting.of(scene), scene, 1e-8).quantities["duration"].value)
+    assert off <= found.error < 3.0 * off

@@ -128,7 +128,6 @@ def test_the_law_of_a_bar_is_the_rectangle_of_one_echo() -> None:
     np.testing.assert_allclose(np.interp(places, found.history.time, found.history.force), 300.0, rtol=1e-12)
 
 
-@pytest.mark.family
 @pytest.mark.parametrize("gravity", [0.0, 3.0, 10.0, 25.0])
 def test_the_centre_of_a_bar_moves_by_its_force_and_no_energy_is_lost(gravity: float) -> None:
     """M dv/dt = M g - F and dx/dt = v from the rows alone, by the trapezium rule; energy from the waves themselves."""

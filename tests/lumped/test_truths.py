@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from lumped import BadInput, Relaxation, Result, Scene, laws, simulate
+from lumped.result.history import End
 
 Build = Callable[..., Scene]
 
@@ -78,6 +79,21 @@ def test_a_fluid_may_never_let_go(law: str, impact: Build, unit_time: float) -> 
     # literature 3.5: 1.95 of the elastic depth, parabola
     elastic = scene.shape.hertz_impact(1e6, scene.mass, scene.velocity)
     assert value(result, "peak_depth") / elastic.depth == pytest.approx(1.95, abs=0.01)
+
+
+@pytest.mark.parametrize("law", ["ting", "mdr", "correspondence"])
+@pytest.mark.parametrize(("time", "end", "why"), [(0.1, 1e-3, End.TIME), (0.1, 100.0, End.REST), (1e-6, 1e6, End.REST)])
+def test_a_fluid_stops_the_striker_in_its_own_time(law: str, time: float, end: float, why: End, impact: Build) -> None:
+    """However thin it is, and not at once."""
+    assert run(law, impact(0.0, (1.0,), (time,), end_time=end), 1e-4).message == why.value
+
+
+def test_a_faint_spring_turns_what_a_fluid_has_nearly_stopped(impact: Build) -> None:
+    """A millionth of the stiffness lasts: it sends the striker back, slowly."""
+    scene = impact(0.0, (1.0, 1e-6), (0.05, 1e7), end_time=1e5)
+    exact, row, clipped = (run(law, scene, 1e-4) for law in ("ting", "mdr", "correspondence"))
+    assert 0.0 < value(clipped, "restitution") < value(exact, "restitution") < 1e-4
+    assert value(row, "restitution") == pytest.approx(value(exact, "restitution"), rel=1e-3)
 
 
 @pytest.mark.parametrize("law", ["ting", "mdr", "correspondence"])
