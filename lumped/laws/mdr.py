@@ -26,7 +26,7 @@ FORCE, SEEN = 4, [1, 2, 4, 5]
 INTERVALS, ELEMENTS = 8, 16
 MOST_PARTS = 512  # 4096 steps, which err by rounding
 # So many marches of which none halves the widest bar that was before: what is left of it is rounding.
-STALLED, NO_BETTER = 3, 0.5
+STALLED, NO_BETTER = 2, 0.5
 # Rows through which the polynomials of a rebound run that goes on beyond the end.
 ROWS_BEYOND = 6
 # Did limits of two err by h^2 alone, that of three would err by a third of what it differs from the first. A force that
