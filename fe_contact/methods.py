@@ -13,11 +13,12 @@ from dataclasses import asdict, dataclass, replace
 import numpy as np
 
 from fe_contact.errors import faults_of
-from fe_contact.progress import Progress, silent
+from fe_contact.progress import Count, Progress, silent
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, checked
 from lumped import laws
 from lumped import simulate as simulate_law
 from lumped.errors import BadInput, Fault, FeContactError, nearest, shown
+from lumped.progress import counting_steps
 from lumped.result.result import Result, largest_bar, unmet
 from lumped.scene.scene import Scene
 from lumped.schema import Table
@@ -63,8 +64,8 @@ def simulate(
     with faults_of(scene):
         given, method = settings(table, tolerance, scene.source), method or default(scene)
         if method not in OWN:
-            return _lumped(scene, method, given)
-        weighing = weigh(scene, given) if method != FE else None
+            return _lumped(scene, method, given, progress)
+        weighing = weigh(scene, given, progress) if method != FE else None
         if weighing and weighing.answer:
             return weighing.answer
         from fe_contact.reference import fe  # late: a law needs no finite elements
@@ -73,11 +74,12 @@ def simulate(
         return replace(found, weighed=weighing.to_json()) if weighing else found
 
 
-def _lumped(scene: Scene, name: str, given: Given) -> Result:
+def _lumped(scene: Scene, name: str, given: Given, progress: Progress) -> Result:
     """By a lumped law. Raises BadInput for an unknown name."""
     if reason := refusal(name):
         raise BadInput(Fault("--method", "", reason))
-    found = simulate_law(laws.get(name).of(scene), scene, tolerance=given.get("tolerance", DEFAULT_TOLERANCE))
+    with counting_steps(Count.of(progress, f"time steps of {name}", 0.0)):
+        found = simulate_law(laws.get(name).of(scene), scene, tolerance=given.get("tolerance", DEFAULT_TOLERANCE))
     if scene.has_geometry:
         widest = float(np.nanmax(found.history.contact_radius, initial=0.0))
         scene.check_sunk(found.quantities["peak_depth"].value or 0.0, widest)
@@ -134,7 +136,7 @@ def lines_of(weighed: Iterable[Table]) -> list[str]:
     return candidates + [f"{', '.join(names)}: {reason}" for reason, names in reasons.items()]
 
 
-def weigh(scene: Scene, given: Given) -> Weighing:
+def weigh(scene: Scene, given: Given, progress: Progress = silent) -> Weighing:
     """The cheapest method whose bar is within the tolerance, and why it is that one.
 
     `given`: :func:`settings`. Exact laws are asked, the cheapest first, until one meets the tolerance; else it is
@@ -147,7 +149,7 @@ def weigh(scene: Scene, given: Given) -> Weighing:
             reason = f"as exact as {answer.method}, no cheaper"
             weighed.append(Weighed(name, tolerance, laws.get(name).seconds, reason))
             continue
-        one, answer = _asked(scene, name, given)
+        one, answer = _asked(scene, name, given, progress)
         weighed.append(one)
     weighed.append(_elements(scene, given, tolerance, answer))
     out = [Weighed(name, None, None, why_not(scene, name)) for name in laws.available() if name not in exact]
@@ -179,10 +181,10 @@ def why_not(scene: Scene, name: str) -> str:
     return ""
 
 
-def _asked(scene: Scene, name: str, given: Given) -> tuple[Weighed, Result | None]:
+def _asked(scene: Scene, name: str, given: Given, progress: Progress) -> tuple[Weighed, Result | None]:
     """An exact law's answer, None where it has none that meets the tolerance."""
     try:
-        found = _lumped(scene, name, given)
+        found = _lumped(scene, name, given, progress)
     except FeContactError as refused:
         if not scene.has_geometry:
             raise

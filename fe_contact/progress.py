@@ -12,14 +12,13 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TextIO
 
+from lumped.progress import Counted as Counted
 from lumped.progress import Progress as Progress
 from lumped.progress import silent as silent
+from lumped.progress import uncounted as uncounted
 
 OFTEN = 0.2  # s between two words on a terminal, as fast as anybody reads
 SELDOM = 1.0  # s between two lines of a log
-
-
-Counted = Callable[[float], None]  # told that so many parts of a work are done
 
 
 def to_all(listeners: Sequence[Progress]) -> Progress:
@@ -51,10 +50,6 @@ class Count:
         """So many more are done."""
         self.done += parts
         self.progress(self.message, self.done, max(self.total, self.done) if self.total else 0.0)
-
-
-def uncounted(parts: float = 1.0) -> None:
-    """Nobody counts."""
 
 
 @dataclass

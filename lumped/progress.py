@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Protocol
 
 
@@ -16,3 +19,28 @@ class Progress(Protocol):
 
 def silent(message: str, done: float = 0, total: float = 0) -> None:
     """Nobody listens."""
+
+
+Counted = Callable[[float], None]  # told that so many parts of a work are done
+
+
+def uncounted(parts: float = 1.0) -> None:
+    """Nobody counts."""
+
+
+_steps: ContextVar[Counted] = ContextVar("steps", default=uncounted)
+
+
+@contextmanager
+def counting_steps(counted: Counted) -> Iterator[None]:
+    """Meanwhile every step that a law marches, or tries, is told to `counted`, however deep it lies."""
+    before = _steps.set(counted)
+    try:
+        yield
+    finally:
+        _steps.reset(before)
+
+
+def step_done() -> None:
+    """A law has marched a step, or tried one."""
+    _steps.get()(1.0)

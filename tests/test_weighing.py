@@ -90,8 +90,8 @@ def test_the_next_law_is_asked_where_the_first_one_misses_the_tolerance(monkeypa
     """A fake Ting that never meets it: its bar is said, and the row of springs taken; two such, finite elements."""
     original, inexact = methods._lumped, ["ting"]
 
-    def lumped(scene: Scene, name: str, given: dict[str, Any]) -> Any:
-        found = original(scene, name, given)
+    def lumped(scene: Scene, name: str, given: dict[str, Any], progress: Any) -> Any:
+        found = original(scene, name, given, progress)
         if name not in inexact:
             return found
         wide = {key: replace(one, error=0.5 * abs(one.value or 1.0)) for key, one in found.quantities.items()}

@@ -29,7 +29,7 @@ def execute(args: argparse.Namespace) -> int:
     scene, table = base.read_scene(args)
     progress, given = base.progress_of(args), settings(table, None, scene.source)
     progress("plan")
-    weighing = weigh(scene, given)
+    weighing = weigh(scene, given, progress)
     taken, weighed = weighing.taken, weighing.to_json()
     method = {"name": taken.method, "bar": taken.bar, "cpu_s": taken.cpu_s, "reason": taken.reason}
     title, methods = f"{scene.name}: {taken}", {"method": method, "weighed": weighed}

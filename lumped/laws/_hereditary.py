@@ -130,10 +130,9 @@ def simulate(name: str, scene: Scene, tolerance: float, solve: Solve, inexact: I
             break
         rtol *= NEXT
     errors, lost = inexact(problem, more) if inexact else ({}, 0.0)
-    quantities = {
-        name: one if one.error is None else replace(one, error=one.error + errors.get(name, 0.0))
-        for name, one in quantities.items()
-    }
+    for name, error in errors.items():
+        one = quantities[name]
+        quantities[name] = one if one.error is None else replace(one, error=one.error + error)
     force_error += lost
     numerics = {"integrator": "Radau", "rtol": rtol, "points": MORE}
     work = {"force_evaluations": evaluations}
@@ -158,12 +157,13 @@ def answer_of(scene: Scene, problem: Hereditary, course: Course) -> Answer:
     """What an integration says, in SI."""
     scales, last = problem.scales, course.phases[-1]
     (peak_time, force), (_, depth) = course.highest(3), course.highest(0)
-    velocity, time = float(last.last[1]) * scales.velocity, float(last.times[-1]) * scales.time
+    state = last.last
+    velocity, time = float(state[1]) * scales.velocity, float(last.times[-1]) * scales.time
     peak = (peak_time * scales.time, force * scales.force)
     values = values_of(scene, course.end, peak, depth * scales.depth, velocity, time)
     said = "" if course.end is End.SEPARATED else course.end.value
     columns = _HereditaryColumns(problem, course)
-    return Answer(course.times * scales.time, columns, values, course.end, _energy(scene, problem, last.last), said)
+    return Answer(course.times * scales.time, columns, values, course.end, _energy(scene, problem, state), said)
 
 
 @dataclass(frozen=True, eq=False)

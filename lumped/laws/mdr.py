@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
@@ -13,7 +14,7 @@ from lumped.laws._assembly import Answer, assemble, bars, values_of, wider
 from lumped.laws.base import LawKind, check, waves
 from lumped.numbers import Array, Clock, local, peak
 from lumped.result.history import End
-from lumped.result.result import Result, meets
+from lumped.result.result import Result, largest_bar, meets
 from lumped.scene.scene import Scene
 from lumped.solvers.mdr.nest import Level, Nest, coarse, coarse_beyond, limit, pace_of, predicted_turn, problem_of
 
@@ -24,6 +25,8 @@ FORCE, SEEN = 4, [1, 2, 4, 5]
 # more elements says: one of eight would make them uneven, and many finer ones needed.
 INTERVALS, ELEMENTS = 8, 16
 MOST_PARTS = 512  # 4096 steps, which err by rounding
+# So many marches of which none halves the widest bar that was before: what is left of it is rounding.
+STALLED, NO_BETTER = 2, 0.5
 # Rows through which the polynomials of a rebound run that goes on beyond the end.
 ROWS_BEYOND = 6
 # Did limits of two err by h^2 alone, that of three would err by a third of what it differs from the first. A force that
@@ -63,7 +66,7 @@ class SpringRow:
         if stop > scene.end_time:
             nest = replace(nest, cut=scene.end_time)
         nest, level, before = nest.begun(track.approach[-1].time)
-        levels, limits, parts = [level], list[Level](), 1
+        levels, limits, widest, parts = [level], list[Level](), list[float](), 1
         while parts < MOST_PARTS:
             parts *= 2
             turn = predicted_turn(before, levels[-1].turn)
@@ -78,7 +81,8 @@ class SpringRow:
                 if any(level.within_step for level in levels[-3:]):
                     others, least = bars(answer, _answer(scene, levels[-2]), 1.0)
                     quantities, force_error = wider(quantities, others), max(force_error, least)
-                if meets(quantities, tolerance):
+                widest.append(largest_bar(quantities))
+                if meets(quantities, tolerance) or _stalled(widest):
                     break
         work = {"steps": sum(level.steps for level in levels), "springs": levels[-1].approach.shape[1]}
         numerics = {"levels": len(levels), "parts": parts}
@@ -109,6 +113,11 @@ def estimate(scene: Scene, elements: int = 70) -> ImpactScales:
         duration=float(time[-1]) if separated else None,
         restitution=float(-velocity[-1]) / scene.velocity if separated else None,
     )
+
+
+def _stalled(widest: Sequence[float]) -> bool:
+    """Whether the last marches, by the widest bar after each, found rounding alone."""
+    return len(widest) > STALLED and min(widest[-STALLED:]) > NO_BETTER * min(widest[:-STALLED])
 
 
 def _answer(scene: Scene, level: Level) -> Answer:

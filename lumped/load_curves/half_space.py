@@ -93,18 +93,22 @@ class KnownByRadius(HalfSpaceCurve):
         return self.depth(contact_radius), self.depth_slope(contact_radius)
 
     def contact_radius(self, depth: ArrayLike) -> Real:
-        """a with depth(a) = depth, m: Newton's steps, and the middle of the places around it where one leaves them."""
-        asked = np.asarray(depth, dtype=float)
+        """a with depth(a) = depth, m: Newton's steps, and the middle of the places around it where one leaves them.
+
+        From the logarithm of the depth to that of what is touched beyond the first: powers are straight there.
+        """
+        asked, least = np.asarray(depth, dtype=float), self.least_radius
         wanted = asked[asked > 0.0]
         radius = self.wider(wanted)
-        low, high = np.full_like(radius, self.least_radius), radius
-        with np.errstate(invalid="ignore"):  # of an infinite depth, which a solver asks that has lost its way
+        low, high = np.full_like(radius, least), radius
+        with np.errstate(all="ignore"):  # of an infinite depth, which a solver asks that has lost its way
             for _ in range(STEPS):
-                (reached, slope), before = self.depth_and_slope(radius), radius
-                over = reached - wanted
-                low, high = np.where(over < 0.0, radius, low), np.where(over > 0.0, radius, high)
-                radius = radius - over / slope
-                radius = np.where((radius < low) | (radius > high), 0.5 * (low + high), radius)
+                (reached, slope), before, beyond = self.depth_and_slope(radius), radius, radius - least
+                low, high = np.where(reached < wanted, radius, low), np.where(reached > wanted, radius, high)
+                radius = least + beyond * (wanted / reached) ** (reached / (beyond * slope))
+                # with nothing beyond, where the exponent is no number, it is the first touch to rounding
+                inside = ((radius >= low) & (radius <= high)) | (beyond == 0.0)
+                radius = np.where(inside, np.fmax(radius, least), 0.5 * (low + high))
                 if np.all(np.abs(radius - before) <= LAST_STEP * radius):
                     break
         found = np.full_like(asked, self.least_radius)

@@ -64,7 +64,7 @@ class SneddonSphere(HalfSpaceCurve):
     def _angles(self, depth: ArrayLike) -> Array:
         """u at depths, an array of their shape."""
         ratio = np.asarray(np.maximum(depth, 0.0) / self.radius)
-        return np.asarray(_angle(ratio, np.tanh, ratio.max(initial=0.0)))
+        return np.asarray(_angle(ratio, np.tanh, _largest(ratio)))
 
 
 def _angle(ratio: Real, tanh: Callable[[Real], Real], deepest: float) -> Real:
@@ -82,11 +82,15 @@ def _angle(ratio: Real, tanh: Callable[[Real], Real], deepest: float) -> Real:
 
 def _minus_tanh(u: Array, t: Array) -> Array:
     """u - tanh u to full relative precision."""
-    shallow = u < SERIES_BELOW
-    if not shallow.any():
-        return u - t
     square = u * u
     series = SERIES[-1] * square + SERIES[-2]
     for coefficient in SERIES[-3::-1]:
-        series = series * square + coefficient
-    return np.where(shallow, u * square * series, u - t)
+        series *= square
+        series += coefficient
+    series = u * square * series
+    return series if _largest(u) < SERIES_BELOW else np.where(u < SERIES_BELOW, series, u - t)
+
+
+def _largest(values: Array) -> float:
+    """Of values >= 0 of any shape; sooner told than by their own method."""
+    return float(np.maximum.reduce(values, axis=None, initial=0.0))

@@ -68,10 +68,10 @@ class Relaxation:
     fidelity: Fidelity | None = None
 
     def __post_init__(self) -> None:
-        numbers = np.array([self.equilibrium, self.viscosity, *self.moduli, *self.times], dtype=float)
+        numbers = self.equilibrium, self.viscosity, *self.moduli, *self.times
         if len(self.moduli) != len(self.times):
             raise BadInput(Fault("material", "", "moduli and times differ in length"))
-        if not np.all(np.isfinite(numbers)) or np.any(numbers < 0.0) or 0.0 in self.times:
+        if not all(0.0 <= number < math.inf for number in numbers) or 0.0 in self.times:
             raise BadInput(Fault("material", "", "moduli and viscosity are >= 0, times > 0, all finite"))
         if self.equilibrium + sum(self.moduli) + self.viscosity <= 0.0:
             raise BadInput(Fault("material", "", "every modulus and the viscosity are zero"))

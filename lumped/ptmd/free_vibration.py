@@ -88,13 +88,13 @@ class PowerLoad:
         """The load."""
         return np.asarray(depth) ** self.exponent
 
-    def dforce_ddepth(self, depth: Array) -> Array:
-        """Its slope."""
-        return np.asarray(self.exponent * np.asarray(depth) ** (self.exponent - 1.0))
+    def force_and_slope(self, depth: Array) -> tuple[Array, Array]:
+        """The load and its slope."""
+        return self.force(depth), np.asarray(self.exponent * np.asarray(depth) ** (self.exponent - 1.0))
 
     def contact_radius(self, depth: Array) -> Array:
         """Half the slope."""
-        return 0.5 * self.dforce_ddepth(depth)
+        return 0.5 * self.force_and_slope(depth)[1]
 
     def depth_slope(self, contact_radius: Array) -> Array:
         """d depth over d radius; infinite where the slope stays."""

@@ -75,11 +75,13 @@ class History(ForceOverTime):
     force_error: Array
 
     def __post_init__(self) -> None:
-        for name, column in freeze_columns(self, COLUMNS).items():
+        columns = freeze_columns(self, COLUMNS)
+        for name, column in columns.items():
             if column.ndim != 1 or column.size < 2 or column.shape != self.time.shape:
                 raise BadInput(Fault("history", name, "columns are one-dimensional, of one length, at least 2"))
-            if not np.all(np.isfinite(column)):
-                raise BadInput(Fault("history", name, "every value is finite"))
+        finite = np.isfinite([*columns.values()]).all(axis=1)
+        if not finite.all():
+            raise BadInput(Fault("history", [*columns][finite.argmin()], "every value is finite"))
         if np.any(np.diff(self.time) < 0.0):
             raise BadInput(Fault("history", "time", "time never decreases"))
 

@@ -24,6 +24,7 @@ from numpy.typing import ArrayLike
 
 from lumped.errors import NotReached
 from lumped.numbers import Array
+from lumped.progress import step_done
 
 MOST_PIECES = 100_000  # work: waves in the bar until the time asked for
 ROUNDING = 1e-12  # of the transit time and of the largest speed
@@ -155,6 +156,7 @@ def bounces(
     while time < end and parted < contacts:
         if len(pieces) > MOST_PIECES:
             raise NotReached(f"bar: more than {MOST_PIECES} waves before t = {time:.6g} s; cure: an earlier end")
+        step_done()
         value, slope, until = _echo(pieces, time - bar.echo, time)
         until += bar.echo
         pressing, rate = velocity + gravity * time - 2.0 * value, gravity - 2.0 * slope  # F/Z and its slope

@@ -38,6 +38,7 @@ from numpy.typing import NDArray
 
 from lumped.errors import NotReached
 from lumped.numbers import Array, Real, gauss
+from lumped.progress import step_done
 from lumped.scene.scene import Scene
 from lumped.targets.rod import Rod
 
@@ -149,6 +150,7 @@ class FlatImpact:
         alpha, echo = self.waves.delay / self.unit, self.waves.echo
         found = [RodPiece(weight, Polynomial([1.0 - weight]))]
         while len(found) <= MOST_PIECES:
+            step_done()
             begin = 0.0 if len(found) == 1 else (len(found) - 1) * self.waves.delay
             longest = min(alpha, (self.until - begin) / self.unit)
             leaves = self._leaves(found, longest)
@@ -289,6 +291,7 @@ class TippedImpact:
         cure, steps = "accepted: a heavier rod, an earlier motion.end_time", count()
 
         def parted(_: float, y: Array) -> float:
+            step_done()
             if next(steps) > MOST_STEPS:
                 raise NotReached(f"rod: more than {MOST_STEPS} steps; {cure}")
             return float(y[STRIKER] - y[END])

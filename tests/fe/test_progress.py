@@ -139,6 +139,30 @@ def test_waves_along_a_line_tell_every_step(name: str) -> None:
     assert len(steps) >= found.numerics["steps"] // 2
 
 
+LASTING = {
+    "correspondence": ("polymer-sphere", {"model.gravity": 9.81, "motion.impacts": 3}),
+    "tsuji": ("polymer-sphere", {"model.gravity": -1e3}),  # asks mdr for its restitution
+    "hertz": ("polymer-sphere", {}),
+    "ting": ("polymer-sphere", {}),
+    "mdr": ("polymer-sphere", {}),
+    "rod_waves": ("rod", {}),
+    "bar_waves": ("bar", {}),
+}
+
+
+@pytest.mark.parametrize("law", LASTING)
+def test_a_law_tells_every_step_that_it_tries(law: str) -> None:
+    """Contacts that settle, and rows of many springs, may take a minute of them."""
+    told = list[tuple[str, float, float]]()
+    name, overrides = LASTING[law]
+    found = simulate(
+        Scene.load(name, overrides), law, {}, progress=lambda *word, **_: told.append((*word, 0.0, 0.0)[:3])
+    )
+    assert told[0] == (f"time steps of {law}", 0.0, 0.0)
+    assert told[1:] == [(f"time steps of {law}", number, 0.0) for number in range(1, len(told))]
+    assert len(told) > found.work.get("steps", 1), "a word a step, or more"
+
+
 @pytest.mark.parametrize("place", ["missing/log", "."])
 def test_a_log_that_cannot_be_written_is_refused_before_the_work(
     place: str, empty: Path, capsys: pytest.CaptureFixture[str]

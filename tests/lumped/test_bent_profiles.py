@@ -56,6 +56,27 @@ def abel(shape: Shape, a: float) -> float:
 
 
 @pytest.mark.parametrize("shape", BENT, ids=lambda shape: shape.name)
+def test_a_few_looks_find_the_contact_radius_of_any_depth(shape: Shape, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Laws ask for it at every trial of a step, under much gravity at depths that are hardly any."""
+    curve, looks = curve_of(shape), list[int]()
+    asked = type(curve).depth_and_slope
+
+    def counted(curve: KnownByRadius, radius: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        looks.append(radius.size)
+        return asked(curve, radius)
+
+    monkeypatch.setattr(type(curve), "depth_and_slope", counted)
+    depths = 10.0 ** np.arange(-150.0, -2.0)
+    found = curve.contact_radius(depths)
+    assert len(looks) <= 8
+    assert np.all(np.diff(found) >= 0.0)
+    flat = curve.least_radius  # beside which hardly any depth makes no difference
+    seen = depths > 1e-9 * flat
+    assert curve.depth(found[seen]) == pytest.approx(depths[seen], rel=1e-9 if flat else 1e-13)
+    assert found[~seen] == pytest.approx(flat, rel=1e-4)
+
+
+@pytest.mark.parametrize("shape", BENT, ids=lambda shape: shape.name)
 def test_the_depth_is_abels_transform_of_the_slope(shape: Shape) -> None:
     for a in widths(curve_of(shape)):
         assert float(curve_of(shape).depth(a)) == pytest.approx(abel(shape, float(a)), rel=1e-10)

@@ -16,7 +16,7 @@ import numpy as np
 from fe_contact.budget.plan import has_curve
 from fe_contact.budget.variation import factor
 from fe_contact.indentation import indent
-from fe_contact.progress import Progress, silent
+from fe_contact.progress import Count, Progress, silent
 from fe_contact.reference import Solved, answered
 from fe_contact.settings import Given
 from fe_contact.studies.compare.deviations import (
@@ -33,6 +33,7 @@ from lumped import simulate
 from lumped.errors import BadInput, FeContactError
 from lumped.laws import get
 from lumped.load_curves.sampled import SampledCurve
+from lumped.progress import counting_steps
 from lumped.result.result import RULED_RELATIVE, Result
 from lumped.result.score import Curve as Measured
 from lumped.result.score import score
@@ -138,7 +139,8 @@ def compare(
     for count, (name, member) in enumerate(members.items()):
         progress(f"law {name}", count, len(members))
         try:
-            laws[name] = simulate(member.of(scene), scene, LAW_TOLERANCE)
+            with counting_steps(Count(progress, f"time steps of {name}", 0.0)):
+                laws[name] = simulate(member.of(scene), scene, LAW_TOLERANCE)
         except FeContactError as failure:  # what has no answer is told, and the others go on
             refused[name] = _reason(name, failure)
     told = Told.of(reference) if solved is None else Told.by(solved)

@@ -168,10 +168,11 @@ def shut(
     One that will err by more than `allowed` is not sought any closer, and is None where its end is not near yet, as it
     is where Newton's steps fail, and from a depth whose load is lost in rounding.
     """
-    if not problem.loads(state[:1])[0].all():
+    load, slope = (float(value[0]) for value in problem.loads(state[:1]))
+    if not load:
         return None
     (duration, a, steep), steps, missed = start, 0, math.inf
-    power, unit = _power(problem, state)
+    power, unit = _power(float(state[DEPTH]), load, slope)
     steep, before = steep or unit * _mean_modulus(problem, duration), None
     for _ in range(TRIES):
         try:
@@ -226,10 +227,8 @@ class _Fallen(NamedTuple):
         return (math.copysign(abs(load) ** (1.0 / power), load) - self.depth) / self.velocity
 
 
-def _power(problem: Hereditary, state: Array) -> tuple[float, float]:
-    """Power and unit of the load y = unit depth^power around a state; F falls about straight with y, not with depth."""
-    load, slope = (float(value[0]) for value in problem.loads(state[:1]))
-    depth = float(state[DEPTH])
+def _power(depth: float, load: float, slope: float) -> tuple[float, float]:
+    """Power and unit of the load y = unit depth^power around a depth; F falls about straight with y, not with depth."""
     power = slope * depth / load
     return power, abs(load) / abs(depth) ** power  # the load is odd, of a surface that is drawn out too
 

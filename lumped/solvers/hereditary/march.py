@@ -10,6 +10,7 @@ import numpy as np
 
 from lumped.errors import NotReached, TooManySteps
 from lumped.numbers import Array
+from lumped.progress import step_done
 from lumped.solvers.hereditary.path import Path
 from lumped.solvers.radau import Nodes, chebyshev_through_zero, radau
 
@@ -85,6 +86,7 @@ class Stretch:
         values: list[Array] = []
         state = start
         while len(values) < MOST_PIECES:
+            step_done()
             place = breaks[-1]
             length = min(length, span[1] - place)
             piece = self.attempt(place, length, state)

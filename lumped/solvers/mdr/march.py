@@ -13,6 +13,7 @@ from typing import NamedTuple, Protocol
 
 from lumped.errors import NotReached, TooManySteps
 from lumped.numbers import falling_zero
+from lumped.progress import step_done
 from lumped.result.history import AT_REST, End
 from lumped.solvers.mdr.row import (
     Fading,
@@ -161,6 +162,7 @@ def _to_turn(row: SpringsInRow, now: Instant, beyond: RowStep) -> RowStep:
 
 def grown(row: SpringsInRow, now: Instant, h: float) -> RowStep:
     """A step of length h, s, not yet taken. Raises NotReached."""
+    step_done()
     modulus = row.problem.modulus
     faded = fadings(modulus, h)
     rate, width, pressed = _rate(row, now, h, faded)
@@ -361,6 +363,7 @@ class Shrinking:
 
     def attempt(self, h: float) -> Attempt:
         """A step of this length: m (v1 - v0) = m g h - int F dt with v0 + v1 twice the rate."""
+        step_done()
         problem, modulus, now, even = self.row.problem, self.row.problem.modulus, self.now, self.row.even
         h = max(h, LEAST)
         pressed = self.share * h

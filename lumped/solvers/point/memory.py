@@ -8,7 +8,7 @@ the loads y there, w_k = q_k w_k(0) + L_k y, so the force is too: F = b + B y.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -31,8 +31,8 @@ class Loading(Protocol):
         """The load y, m2, at a depth, m."""
         ...
 
-    def dforce_ddepth(self, depth: Array) -> Real:
-        """Its slope 2 a, m."""
+    def force_and_slope(self, depth: Array) -> tuple[Real, Real]:
+        """The same and its slope 2 a, m."""
         ...
 
     def contact_radius(self, depth: Array) -> Real:
@@ -60,9 +60,9 @@ class HereditaryLoad:
         """y, zero above the surface."""
         return self.curve.force(np.maximum(depth, 0.0))
 
-    def slope(self, depth: Real) -> Real:
-        """dy/d depth."""
-        return self.curve.dforce_ddepth(np.maximum(depth, 0.0))
+    def load_and_slope(self, depth: Real) -> tuple[Real, Real]:
+        """y and dy/d depth."""
+        return self.curve.force_and_slope(np.maximum(depth, 0.0))
 
     def slope_slope(self, depth: Array) -> Array:
         """d2y/d depth2 = 2 da/d depth, zero where the depth is."""
@@ -72,9 +72,12 @@ class HereditaryLoad:
 
     def force(self, depth: Real, rate: Real, memory: Real) -> Array:
         """F, N; `memory` has the branches first, shape (K, ...)."""
+        return self.pressing(*self.load_and_slope(depth), rate, memory)
+
+    def pressing(self, load: Real, slope: Real, rate: Real, memory: Real) -> Array:
+        """The same where the load and its slope are known."""
         remembered = np.tensordot(np.array(self.modulus.moduli), np.asarray(memory), axes=(0, 0))
-        viscous = self.modulus.viscosity * self.slope(depth) * rate
-        return np.asarray(self.modulus.glassy * self.load(depth) - remembered + viscous)
+        return np.asarray(self.modulus.glassy * load - remembered + self.modulus.viscosity * slope * rate)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +88,7 @@ class StepLoad:
     memory: Array
     gains: Array
     response: Array
+    _known: list[tuple[Array, tuple[Real, Real]]] = field(default_factory=list, init=False, repr=False)
 
     @classmethod
     def of(cls, load: HereditaryLoad, memory: tuple[float, ...], length: float, nodes: Nodes) -> StepLoad:
@@ -98,20 +102,30 @@ class StepLoad:
 
     def memories(self, depth: Array) -> Array:
         """w_k at the points from the depths there, shape (K, s)."""
-        return np.asarray(self.gains * self.memory[:, None] + self.response @ self.load.load(depth))
+        return self._remembered(self._loads(depth)[0])
 
     def force(self, depth: Array, rate: Array) -> Array:
         """F at the points, N."""
-        return np.asarray(self.load.force(depth, rate, self.memories(depth)))
+        load, slope = self._loads(depth)
+        return self.load.pressing(load, slope, rate, self._remembered(load))
 
     def tangents(self, depth: Array, rate: Array) -> tuple[Array, Array]:
         """dF/d depth, shape (s, s), and dF/d rate, shape (s,)."""
-        modulus, slope = self.load.modulus, np.asarray(self.load.slope(depth))
+        modulus, slope = self.load.modulus, np.asarray(self._loads(depth)[1])
         remembered = np.tensordot(np.array(modulus.moduli), self.response, axes=(0, 0))
         over_depth = -remembered * slope
         bent = modulus.viscosity * rate * self.load.slope_slope(depth) if modulus.viscosity else 0.0
         over_depth.flat[:: depth.size + 1] += modulus.glassy * slope + bent
         return over_depth, modulus.viscosity * slope
+
+    def _remembered(self, load: Real) -> Array:
+        return np.asarray(self.gains * self.memory[:, None] + self.response @ load)
+
+    def _loads(self, depth: Array) -> tuple[Real, Real]:
+        """y and its slope, once for each array of depths: many a load curve has to look for a contact radius."""
+        if not self._known or self._known[0][0] is not depth:
+            self._known[:] = [(depth, self.load.load_and_slope(depth))]
+        return self._known[0][1]
 
 
 def continuous(load: HereditaryLoad, bodies: Bodies, last: State) -> tuple[float, State] | None:

@@ -16,6 +16,7 @@ from scipy.linalg.lapack import dgesv
 
 from lumped.errors import TooManySteps
 from lumped.numbers import Array
+from lumped.progress import step_done
 from lumped.result.history import AT_REST
 from lumped.solvers.point.bodies import TINY, Bodies, PointLaw, Stage, State, Step
 from lumped.solvers.radau import STAGES, Nodes, radau
@@ -30,6 +31,9 @@ ROUNDING = 1e-14
 MOST_STEPS = 5000  # work: time steps of one phase
 LOCATIONS = 60  # work: trials of where in a step an event lies
 PRECISE = 1e-14  # of the time reached: where an event lies
+# Rounding: of a step's length, by which it still changes where it ends with an event; so much of the change before is
+# left of what falls no more.
+ROUNDED, NO_BETTER = 1e-6, 0.5
 # Safety: least and most of the next step over this one, and the share of what is allowed.
 SHORTEST, LONGEST, CAUTION = 0.1, 5.0, 0.8
 # So much rougher than allowed a step need not be located any better to be refused.
@@ -172,6 +176,7 @@ class PointMarch:
         return abs(self.law.carried(state.depth, self.stage) - weight) <= AT_REST * weight
 
     def _solved(self, state: State, length: float, guess: Array, nodes: Nodes) -> Step | None:
+        step_done()
         return solved(self.law, self.stage, self.bodies, state, length, guess, nodes)
 
     def _until_event(self, step: Step | None, now: float, known: str = "") -> tuple[Step | None, str | None]:
@@ -199,6 +204,7 @@ class PointMarch:
         nodes = self._ending(step, event, length)
         guess = nodes.pace * step.accelerations(nodes.points * (length / step.length))
         previous: tuple[float, float] | None = None
+        before = math.inf
         for _ in range(LOCATIONS):
             trial = self._solved(step.start, length, guess, nodes)
             if trial is None:
@@ -211,8 +217,11 @@ class PointMarch:
                 slope = (at - previous[1]) / (length - previous[0])
             low, high = (low, length) if at <= 0.0 else (length, high)
             following = length - at / slope if slope < 0.0 else low
-            if at == 0.0 or abs(following - length) <= PRECISE * (now + length):
+            change = abs(following - length)
+            rounded = change <= ROUNDED * length and change > NO_BETTER * before
+            if at == 0.0 or rounded or change <= PRECISE * (now + length):
                 return trial
+            before = change
             previous, length = (length, at), following if low < following < high else 0.5 * (low + high)
             nodes, guess = self._ending(step, event, length), trial.gain
         return trial

@@ -1,0 +1,66 @@
+"""Where finer steps find rounding alone, and where a striker settles: no more work than tells something."""
+
+from __future__ import annotations
+
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+
+from lumped import Scene, laws, simulate
+from lumped.load_curves.bent import BentCurve
+from lumped.solvers.point import phase
+from lumped.solvers.point.memory import StepLoad
+
+
+@pytest.mark.parametrize("name", ["polymer-sphere", "polymer-sphere-cone"])
+def test_marches_of_springs_stop_where_a_bar_is_rounding(name: str) -> None:
+    """Gravity away from the target leaves hardly any impulse of the contact: its bar is rounding from the first on."""
+    scene = Scene.load(name, {"model.gravity": -1e5})
+    found = simulate(laws.mdr.of(scene), scene, 1e-4)
+    assert "impulse" in found.message
+    assert not found.converged
+    assert found.numerics["parts"] <= 64
+    e, duration = found.quantities["restitution"], found.quantities["duration"]
+    alone = (1.0 + (e.value or 0.0)) * scene.velocity / 1e5
+    assert duration.value == pytest.approx(alone, rel=1e-9), "as gravity alone has it"
+    assert (e.error or 1.0) < 1e-6, "and the rest is known"
+
+
+def test_a_striker_that_settles_takes_few_trials_a_turn() -> None:
+    """Its turns are known to ever fewer digits: no trial goes on for what is rounding."""
+    scene = Scene.load("ball-bouncing", {"motion.impacts": 40, "motion.end_time": 5.0})
+    trials = list[float]()
+    solved = phase.solved
+
+    def counted(law: object, stage: object, bodies: object, start: object, length: float, *more: object) -> object:
+        trials.append(length)
+        return solved(law, stage, bodies, start, length, *more)  # type: ignore[arg-type]
+
+    with patch.object(phase, "solved", counted):
+        found = simulate(laws.correspondence.of(scene), scene, 1e-3)
+    assert "came to rest" in found.message
+    assert len(trials) < 4.0 * found.work["steps"]
+
+
+def test_a_load_curve_is_asked_once_for_each_trial_of_depths() -> None:
+    scene = Scene.load("polymer-rounded-punch", {"motion.impacts": 2, "model.gravity": 9.81, "motion.end_time": 0.02})
+    law = laws.correspondence.law_of(scene)
+    load = StepLoad.of(law.load, law.load.at_rest, 1e-3, phase.NODES)
+    depth, rate = np.linspace(1e-5, 2e-5, 8), np.full(8, 0.02)
+    looked, radius = list[int](), BentCurve.contact_radius
+
+    def counted(curve: BentCurve, depth: np.ndarray) -> object:
+        looked.append(depth.size)
+        return radius(curve, depth)
+
+    with patch.object(BentCurve, "contact_radius", counted):
+        force, (over_depth, _) = load.force(depth, rate), load.tangents(depth, rate)
+        memories = load.memories(depth)
+    assert looked == [8]
+    again = load.force(depth.copy(), rate)
+    assert np.array_equal(force, again)
+    shift = 1e-9 * np.eye(8)
+    slopes = np.array([(load.force(depth + row, rate) - load.force(depth - row, rate)) / 2e-9 for row in shift]).T
+    assert over_depth == pytest.approx(slopes, rel=1e-4, abs=1e-4 * float(np.abs(slopes).max()))
+    assert memories.shape == (1, 8)
