@@ -258,7 +258,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/indentation.py", "ROUNDING", ""): "below what any result is asked for",
     ("fe_contact/budget/certify.py", "ASYMPTOTIC", "0.01 -> 0.001"): "a wider bar, never a narrower one",
     ("fe_contact/budget/certify.py", "_trusted_order", "1.0 ->"): "a factor of both changes that are compared",
-    ("fe_contact/budget/variation.py", "calmest", "1.0 ->"): "a factor that the distance of two histories is without",
+    ("fe_contact/budget/variation.py", "_jitter", "1.0 ->"): "a factor that the distance of two histories is without",
     ("fe_contact/budget/variation.py", "_work", "a tenth"): "a factor of both works that are compared",
     ("fe_contact/budget/variation.py", "Softening.errors", "1.0 -> 10"): "a wider bar, never a narrower one",
     ("fe_contact/budget/variation.py", "Softening.energies", "0.5 * strike.mass"): "a wider bar of work under gravity",
