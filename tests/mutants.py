@@ -250,7 +250,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/budget/curve.py", "DENSE", ""): "which of two sets of places, both dense, a curve is looked at",
     ("fe_contact/budget/curve.py", "EARLIEST", ""): "which of two sets of places, both dense, a curve is looked at",
     ("fe_contact/budget/variation.py", "Variation._about_peak", "1 -> 2"): "which of two neighbouring dense places",
-    ("fe_contact/budget/variation.py", "Variation.errors", "if speed"): "a guard against dividing by zero itself",
+    ("fe_contact/budget/variation.py", "Variation._duration", "if speed"): "a guard against dividing by zero itself",
     ("fe_contact/budget/variation.py", "Variation.energies", "0.5 * speed"): "the square of a small error",
     ("fe_contact/steppers/steps.py", "Inertia.moved", "strike.end_time - state.time"): "an end time but for rounding",
     ("lumped/solvers/mdr/march.py", "Shrinking.__init__", "0.0 -> 0.1"): "a guard against dividing by zero itself",

@@ -159,7 +159,7 @@ def _by_mesh(
     if follows_contact:
         return mesh, change()
     jittery = {"weights": weights, "since": DAMPED_SINCE} if weights else {}
-    return mesh, change(unresolved=np.inf, near=NEAR_ANYWHERE, **jittery)
+    return mesh, change(unresolved=np.inf, near=NEAR_ANYWHERE, creeps=weights is DAMPED_ANYWHERE, **jittery)
 
 
 def _judging(numerics: Numerics, cheap: Numerics, cause: str, stays: bool = False) -> Numerics:

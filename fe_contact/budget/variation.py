@@ -45,7 +45,8 @@ class Variation:
 
     ``weights``: what that factor is to be multiplied with for quantities that deserve less trust. ``unresolved``: time
     up to which no order shows, s; where it is not told, the first step of the second curve. ``near``: share of the
-    largest depth above which the path counts for that.
+    largest depth above which the path counts for that. ``creeps``: whether the end is where the path meets a surface
+    that creeps after it.
     """
 
     first: Curve
@@ -55,6 +56,7 @@ class Variation:
     unresolved: float | None = None
     since: float = LATE
     near: float = TOP
+    creeps: bool = False
 
     @cached_property
     def errors(self) -> dict[str, float]:
@@ -63,13 +65,12 @@ class Variation:
         What is read at one instant takes the largest change around it: a difference of two curves may cross
         zero just there, which makes neither of them right.
         """
-        first, depth = self.first, self._depth_change
-        speed = abs(first.leaving_speed) if first.separated else np.inf
+        first, depth = self.first, np.abs(self._depth_change)
         around = {
             "peak_force": self._peak_force,
             "peak_time": self._peak_time,
             "peak_depth": float(depth[first.dense.depth > self.near * first.dense.depth.max()].max()),
-            "duration": float(depth[self.late :].max()) / speed if speed > 0.0 else np.inf,
+            "duration": self._duration,
             "impulse": self.impulse,
             "restitution": self.velocity / first.strike.velocity,
         }
@@ -184,9 +185,24 @@ class Variation:
     def _force_change(self) -> Array:
         return np.abs(self.first.dense_force - self._second.force)
 
-    @property
+    @cached_property
     def _depth_change(self) -> Array:
-        return np.abs(self.first.dense.depth - self._second.depth)
+        return self.first.dense.depth - self._second.depth
+
+    @property
+    def _duration(self) -> float:
+        """Time in which the largest change of the path late in the contact is covered, s.
+
+        Where the surface creeps, a path that is pressed deeper by a share takes it along, and both meet when they did:
+        of that the end moves by no more than this share of the duration.
+        """
+        first, change, share = self.first, self._depth_change, 0.0
+        speed = abs(first.leaving_speed) if first.separated else np.inf
+        if self.creeps:
+            turn = first.dense.depth.argmax()
+            share = change[turn] / first.dense.depth[turn]
+        late = np.abs(change - share * first.dense.depth)[self.late :].max()
+        return float(late / speed + abs(share) * first.duration) if speed > 0.0 else np.inf
 
     @property
     def _peak_force(self) -> float:

@@ -10,7 +10,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fe_contact.budget.curve import PEAK_SHARE, PLACES, Curve, LocalPolynomials, fitted_peak, peak, seen_from_both_sides
-from fe_contact.budget.variation import calmest, calmest_at_corners
+from fe_contact.budget.variation import LATE, Variation, calmest, calmest_at_corners
 from fe_contact.march.impact import STEPS_ALLOWED, share_of_rest, step_length, time_left
 from fe_contact.steppers.steps import Strike
 from lumped import Relaxation, Scene
@@ -95,6 +95,17 @@ def test_a_force_that_jitters_from_element_to_element_is_evened_or_read_at_corne
 @pytest.mark.parametrize("steps", [40, 80, 256])
 def test_a_smooth_force_keeps_its_steps(steps: int) -> None:
     assert len(calmest(bump(steps, 0.0)).x) == steps + 1
+
+
+def test_a_path_pressed_deeper_by_a_share_moves_the_end_by_that_share_where_the_surface_creeps() -> None:
+    """The dent is deeper, too; a striker that leaves slowly would else seem to be late by the whole change of depth."""
+    smooth, share = bump(64, 0.0), 1e-3
+    slow = replace(smooth.strike, mass=1.0 / (1.02 * smooth.strike.velocity))
+    path = replace(smooth, strike=slow, depth=np.sin(2.2 * smooth.x**2))
+    deeper = replace(path, depth=(1.0 + share) * path.depth)
+    creeping, other = (Variation(path, deeper, 1.0, creeps=creeps).errors["duration"] for creeps in (True, False))
+    assert creeping == pytest.approx(share * path.duration, rel=1e-6)
+    assert other == pytest.approx(share * path.dense.depth[path.shares >= LATE].max() / path.leaving_speed, rel=1e-6)
 
 
 def test_a_spike_between_two_rows_is_a_peak_like_any_other() -> None:
