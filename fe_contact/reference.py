@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 CURE = "cure: a larger tolerance, or fewer numerics of your own"
 ROUNDS = 4  # refinements before giving up
 MOST_STEPS = 20_000  # of all marches of a round, about half a minute; the next one may take twice as many
-MOST_OPERATIONS = 2e12  # of a round, one to two minutes: contact problems reach 1e10 to 3e10 a second
+MOST_OPERATIONS = 3e12  # of a round, two minutes: contact problems reach 2e10 to 4e10 a second
 
 Answer = TypeVar("Answer", bound=Solution, covariant=True)
 
