@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 ROUNDS = 4  # refinements before giving up
 MOST_STEPS = 20_000  # of all marches of a round, about half a minute; the next one may take twice as many
-MOST_OPERATIONS = 5e12  # of a round, half a minute to two: contact problems reach 5e10 to 2e11 a second
+MOST_OPERATIONS = 3e12  # of a round, two minutes: contact problems reach 2e10 to 4e10 a second
 
 Solved = SolvedBy[Certified]  # without waves
 

@@ -53,6 +53,7 @@ from fe_contact.settings import Numerics
 from fe_contact.steppers.flat_end import FlatEnd
 from fe_contact.steppers.steps import Strike
 from fe_contact.steppers.struck import Deformable, Struck
+from lumped.result.result import largest_bar, meets
 from lumped.scene.geometry import Geometry
 
 MARCHES = 2.5  # steps of all marches of a contact over those of the finest one: half and a quarter, and three of these
@@ -86,6 +87,7 @@ NEARLY = 0.8  # share of the expected ratio that the durations must show: they s
 ABOUT_A_STEP = (0.4, 9.0)  # step over relaxation time: outside, its weight in the step is within 1/8 of a power of it
 
 AnyNumerics = TypeVar("AnyNumerics", bound=Numerics)
+Read = Callable[[int, Numerics], Curve | None]  # one contact of a run
 
 
 @dataclass(frozen=True)
@@ -105,15 +107,21 @@ def certify(
     message = f"{numerics.steps} steps, {numerics.elements_per_contact:g} elements along the contact radius"
     runs = Runs(strike, geometry, impacts, Count.of(progress, message, MARCHES * impacts * numerics.steps))
     numerics = runs.placed(numerics, numerics.steps // 4 if numerics.steps >= LEAST_HALVED else numerics.steps)
-    followed = runs.follow(numerics)
-    judged = [_judged(runs, number, numerics, impacts == 1) for number in range(len(followed.contacts))]
-    surface = runs.surface(numerics)
-    return Certified.judged(followed, judged, runs.work(surface), numerics, surface=surface)
+    followed, surface = runs.follow(numerics), runs.surface(numerics)
+
+    def found(read: Read) -> Certified:
+        judged = [_judged(runs, read, number, numerics, impacts == 1) for number in range(len(followed.contacts))]
+        return Certified.judged(followed, judged, runs.work(surface), numerics, surface=surface)
+
+    plain = found(runs.curve)
+    if not runs.ripples or all(meets(part, numerics.tolerance) for part in plain.parts):
+        return plain
+    return min((plain, found(runs.curve_at_corners)), key=lambda one: max(largest_bar(part) for part in one.parts))
 
 
-def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> Judged:
-    """One contact of all runs, where it is ``alone`` with the fewest marches."""
-    curve = partial(runs.curve, number)
+def _judged(runs: Runs, read: Read, number: int, numerics: Numerics, alone: bool) -> Judged:
+    """One contact of all runs, each ``read`` as a curve, where it is ``alone`` with the fewest marches."""
+    curve = partial(read, number)
     surface = runs.surface(numerics)
     steps = _time_steps(curve, numerics, isinstance(surface, FlatEnd))
     steps = replace(steps, value=steps.value.with_peak_spread())
@@ -132,7 +140,7 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> Judged:
         "mesh": (by_mesh, *(() if by_steps else steps.jitter)),
         "penalty": (_variation(curve(pressed), curve(penalty), factor(LEAST_ORDER["penalty"], stiffer)),),
         "time_step": (*steps.changes, *(steps.jitter if by_steps else ())),
-        "far_field": _far_field(runs, steps.value, cheap, mesh, number, alone),
+        "far_field": _far_field(runs, curve, steps.value, cheap, mesh, alone),
     }
     return steps.value, changes
 
@@ -151,7 +159,7 @@ def _by_mesh(
     if follows_contact:
         return mesh, change()
     jittery = {"weights": weights, "since": DAMPED_SINCE} if weights else {}
-    return mesh, change(unresolved=np.inf, near=NEAR_ANYWHERE, **jittery)
+    return mesh, change(unresolved=np.inf, near=NEAR_ANYWHERE, creeps=weights is DAMPED_ANYWHERE, **jittery)
 
 
 def _judging(numerics: Numerics, cheap: Numerics, cause: str, stays: bool = False) -> Numerics:
@@ -180,7 +188,9 @@ def _by_stiffness(runs: Runs, value: Curve, end: FlatEnd, numerics: Numerics) ->
     return found
 
 
-def _far_field(runs: Runs, value: Curve, cheap: Numerics, mesh: Numerics, number: int, alone: bool) -> Causes:
+def _far_field(
+    runs: Runs, curve: Callable[[Numerics], Curve | None], value: Curve, cheap: Numerics, mesh: Numerics, alone: bool
+) -> Causes:
     """By one press of either surface where an elastic one follows one contact; else by a march more, on the
     varied mesh: beside a small contact the far field changes what a surface remembers by more than it does the contact.
 
@@ -196,7 +206,7 @@ def _far_field(runs: Runs, value: Curve, cheap: Numerics, mesh: Numerics, number
         return (Softening(value, factor(order, farther) * compliance_change(surface, other)),)
     if runs.surface(varied) is runs.surface(mesh):
         return ()
-    return (_variation(runs.curve(number, mesh), runs.curve(number, varied), factor(order, farther)),)
+    return (_variation(curve(mesh), curve(varied), factor(order, farther)),)
 
 
 @dataclass(frozen=True)

@@ -174,6 +174,25 @@ class Curve:
         """The curve through some of the steps only, between which it tells the mean force exactly."""
         return replace(self, x=self.x[rows], mean_force=self.mean_force[rows], depth=self.depth[rows])
 
+    def evened(self) -> Curve:
+        """The curve through every other step, halfway between these and what the steps between them tell there; both
+        ends kept.
+
+        What alternates from step to step is gone, and little of what smooth forces tell: both halves err by less than
+        either does without the other.
+        """
+        kept, count = self.thinned(), len(self.x)
+        between = self.through(np.unique([0, *range(1, count, 2), count - 1]))
+        mean = 0.5 * (kept.mean_force + between.resolved(kept.x)[0])
+        mean[[0, -1]] = kept.mean_force[[0, -1]]
+        return replace(kept, mean_force=mean)
+
+    def read_at(self, x: Array) -> Curve:
+        """The curve through other rows, the first of them at touch."""
+        mean, _, depth = self.resolved(x)
+        mean[0], depth[0] = self.mean_force[0], self.depth[0]
+        return replace(self, x=x, mean_force=mean, depth=depth)
+
     @cached_property
     def polynomials(self) -> LocalPolynomials:
         """Mean force but for how it began, and depth, between the steps, over x; at touch it has only begun."""

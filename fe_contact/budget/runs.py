@@ -10,7 +10,7 @@ from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import TotalWork
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import share_of_peak
-from fe_contact.budget.variation import calmest
+from fe_contact.budget.variation import calmest, calmest_at_corners
 from fe_contact.march.impact import march
 from fe_contact.march.impacts import Followed, SurfaceBouncer, follow
 from fe_contact.progress import Counted, uncounted
@@ -33,12 +33,12 @@ def operations(work: TotalWork, finest: Struck) -> float:
     """Leading terms of the arithmetic behind the counted work, as if all of it were on the finest mesh.
 
     N unknowns in the plane cost N^(3/2) a factorisation and N log2 N a back-substitution (George 1973,
-    doi:10.1137/0710032); n surface unknowns and q quadrature points n^2 q + n^3/3 a Newton iteration.
+    doi:10.1137/0710032); n surface unknowns n^3/3 a Newton iteration, which factorises them with sparse springs.
     """
     unknowns = float(work.degrees_of_freedom)
     inside = work.factorizations * unknowns**1.5 + work.solves * unknowns * math.log2(unknowns)
-    points, zone = finest.operator.trace.shape if isinstance(finest, Deformable) else (0, 0)
-    return float(inside + work.iterations * (zone**2 * points + zone**3 / 3))
+    zone = finest.operator.trace.shape[1] if isinstance(finest, Deformable) else 0
+    return float(inside + work.iterations * zone**3 / 3)
 
 
 class AnyRuns(Generic[AnyNumerics]):
@@ -76,6 +76,24 @@ class Runs(AnyRuns[Numerics]):
         self._radii: dict[int, list[Array]] = {}
         self._surfaces = set[Struck]()
         self._places: dict[int, dict[str, float]] = {}
+        self._rippled: dict[Numerics, tuple[Curve, ...]] = {}
+        self._at_corners: dict[tuple[int, Numerics], Curve] = {}
+
+    @property
+    def ripples(self) -> bool:
+        """Whether forces ripple as the edge of a contact crosses elements, so that :meth:`curve_at_corners` tells."""
+        return bool(self._rippled)
+
+    def curve_at_corners(self, number: int, settings: Numerics) -> Curve | None:
+        """The same as :meth:`curve`, read where the edge meets corners, or evened."""
+        if self.curve(number, settings) is None:
+            return None
+        if (number, settings) not in self._at_corners:
+            surface, rippled = self.surface(settings), self._rippled[settings][number]
+            assert isinstance(surface, Deformable)
+            corners = surface.corners(settings.contact_radius)
+            self._at_corners[number, settings] = calmest_at_corners(rippled, corners)
+        return self._at_corners[number, settings]
 
     def placed(self, settings: Numerics, few: int) -> Numerics:
         """The settings for a contact as long, and as wide, as a march of ``few`` steps finds it.
@@ -99,9 +117,10 @@ class Runs(AnyRuns[Numerics]):
         marches = [contact.march for contact in followed.contacts]
         self._works += [one.work for one in marches]
         self._radii.setdefault(settings.steps, [one.radius for one in marches])
-        curves = (Curve.of(contact.march, contact.strike) for contact in followed.contacts)
-        jitters = not (surface.follows_contact or isinstance(surface, FlatEnd) or self._strike.relaxation.is_elastic)
-        self._curves[settings] = tuple(calmest(curve) if jitters else curve for curve in curves)
+        curves = tuple(Curve.of(contact.march, contact.strike) for contact in followed.contacts)
+        if not (surface.follows_contact or isinstance(surface, FlatEnd) or self._strike.relaxation.is_elastic):
+            self._rippled[settings], curves = curves, tuple(calmest(curve) for curve in curves)
+        self._curves[settings] = curves
         return followed
 
     def surface(self, settings: Numerics) -> Struck:

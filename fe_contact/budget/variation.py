@@ -8,7 +8,7 @@ errs by no more than it, hence so does the impulse, and with it speed and path.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fe_contact.assembly.forms import Array
-from fe_contact.budget.curve import BETWEEN, NEAREST_QUARTIC, PLACES, Curve, Reading
+from fe_contact.budget.curve import BETWEEN, NEAREST_QUARTIC, PLACES, STENCIL, Curve, Reading
 from fe_contact.steppers.struck import Deformable
 
 TOP = 0.998  # of the largest depth or force, above which it is near: further away what comes later counts as an error
@@ -45,7 +45,8 @@ class Variation:
 
     ``weights``: what that factor is to be multiplied with for quantities that deserve less trust. ``unresolved``: time
     up to which no order shows, s; where it is not told, the first step of the second curve. ``near``: share of the
-    largest depth above which the path counts for that.
+    largest depth above which the path counts for that. ``creeps``: whether the end is where the path meets a surface
+    that creeps after it.
     """
 
     first: Curve
@@ -55,6 +56,7 @@ class Variation:
     unresolved: float | None = None
     since: float = LATE
     near: float = TOP
+    creeps: bool = False
 
     @cached_property
     def errors(self) -> dict[str, float]:
@@ -63,13 +65,12 @@ class Variation:
         What is read at one instant takes the largest change around it: a difference of two curves may cross
         zero just there, which makes neither of them right.
         """
-        first, depth = self.first, self._depth_change
-        speed = abs(first.leaving_speed) if first.separated else np.inf
+        first, depth = self.first, np.abs(self._depth_change)
         around = {
             "peak_force": self._peak_force,
             "peak_time": self._peak_time,
             "peak_depth": float(depth[first.dense.depth > self.near * first.dense.depth.max()].max()),
-            "duration": float(depth[self.late :].max()) / speed if speed > 0.0 else np.inf,
+            "duration": self._duration,
             "impulse": self.impulse,
             "restitution": self.velocity / first.strike.velocity,
         }
@@ -184,9 +185,24 @@ class Variation:
     def _force_change(self) -> Array:
         return np.abs(self.first.dense_force - self._second.force)
 
-    @property
+    @cached_property
     def _depth_change(self) -> Array:
-        return np.abs(self.first.dense.depth - self._second.depth)
+        return self.first.dense.depth - self._second.depth
+
+    @property
+    def _duration(self) -> float:
+        """Time in which the largest change of the path late in the contact is covered, s.
+
+        Where the surface creeps, a path that is pressed deeper by a share takes it along, and both meet when they did:
+        of that the end moves by no more than this share of the duration.
+        """
+        first, change, share = self.first, self._depth_change, 0.0
+        speed = abs(first.leaving_speed) if first.separated else np.inf
+        if self.creeps:
+            turn = first.dense.depth.argmax()
+            share = change[turn] / first.dense.depth[turn]
+        late = np.abs(change - share * first.dense.depth)[self.late :].max()
+        return float(late / speed + abs(share) * first.duration) if speed > 0.0 else np.inf
 
     @property
     def _peak_force(self) -> float:
@@ -242,15 +258,57 @@ class Variation:
 def calmest(curve: Curve) -> Curve:
     """The curve through every other of its steps as long as its force jitters less so, down to ``FEWEST`` of them.
 
-    On a mesh that stays, the edge crosses node after node: a dashpot's force, which is one of velocities, jitters by
-    the more the shorter the step is. What it jitters by is what every other step less changes.
+    On a mesh that stays, the edge crosses element after element: a dashpot's force, which is one of velocities, jitters
+    by the more the shorter the step is. What it jitters by is what every other step less changes.
     """
+    return _calmed(curve, Curve.thinned)
+
+
+def calmest_at_corners(curve: Curve, corners: Array) -> Curve:
+    """The curve evened to fewer of its steps, or read where its edge stands on ``corners`` (n,), m, as jitters less.
+
+    Wherever the edge stands on a corner the mesh errs alike, so that from one to the next nothing jitters. Either may
+    move what the force adds up to by what its rows do not tell.
+    """
+    even = _calmed(curve, Curve.evened)
+    return min((even, _at_corners(curve, even, _crossings(curve, corners))), key=_jitter)
+
+
+def _calmed(curve: Curve, fewer: Callable[[Curve], Curve]) -> Curve:
+    """Of ``fewer`` steps as long as the force jitters less so, down to ``FEWEST`` of them."""
     while len(curve.x) > 2 * FEWEST:
-        thinner = curve.thinned()
-        if Variation(thinner, thinner.thinned(), 1.0).history >= Variation(curve, thinner, 1.0).history:
+        calmer = fewer(curve)
+        if _jitter(calmer) >= _jitter(curve):
             break
-        curve = thinner
+        curve = calmer
     return curve
+
+
+def _at_corners(curve: Curve, even: Curve, crossed: Array) -> Curve:
+    """The curve read at shares ``crossed`` (n,) of the contact, from them on as the ``even`` one, before at all steps.
+
+    Half a crossing lies between. Of fewer than a polynomial goes through nothing is read.
+    """
+    if len(crossed) < STENCIL:
+        return even
+    begin, end = crossed[0] - 0.5 * (crossed[1] - crossed[0]), crossed[-1] + 0.5 * (crossed[-1] - crossed[-2])
+    before = curve.x[: max(int(np.searchsorted(curve.x**2, begin)), 1)]
+    return curve.read_at(np.concatenate([before, np.sqrt(crossed), even.x[even.x**2 > end]]))
+
+
+def _jitter(curve: Curve) -> float:
+    """What every other row less changes."""
+    return Variation(curve, curve.thinned(), 1.0).history
+
+
+def _crossings(curve: Curve, corners: Array) -> Array:
+    """Shares of the contact, ascending, at which the growing edge stands on corners, once no step passes several."""
+    top = int(curve.radius_squared.argmax()) + 1
+    squares = np.maximum.accumulate(curve.radius_squared[:top])
+    inside = corners[(corners > 0.0) & (corners**2 < squares[-1])]
+    crossed, steps = np.interp(inside**2, squares, curve.radius_x[:top] ** 2), curve.x**2
+    short = np.flatnonzero(np.diff(crossed) < np.interp(crossed[1:], steps[1:], np.diff(steps)))
+    return np.asarray(crossed[short[-1] + 1 if short.size else 0 :])
 
 
 @dataclass(frozen=True)

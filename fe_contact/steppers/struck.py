@@ -102,6 +102,10 @@ class Deformable(Condensed):
         """Distance of the quadrature points from the first touch as the striker's profile counts it, m; (q,)."""
         return unit * self.operator.points
 
+    def corners(self, contact_radius: float) -> Array:
+        """Where elements meet on the surface, m, ascending, as :meth:`places` are counted; see :meth:`unit`."""
+        return np.interp(self.operator.corners, self.operator.points, self.places(self.unit(contact_radius)))
+
     def stepper(self, strike: Strike, numerics: Numerics, expected: Sequence[float] | Array) -> Stepping:
         """Steps on the mesh that stays, for which no radius has to be expected."""
         return FixedStepper(strike, self, numerics)

@@ -10,12 +10,13 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fe_contact.budget.curve import PEAK_SHARE, PLACES, Curve, LocalPolynomials, fitted_peak, peak, seen_from_both_sides
-from fe_contact.budget.variation import calmest
+from fe_contact.budget.variation import LATE, Variation, calmest, calmest_at_corners
 from fe_contact.march.impact import STEPS_ALLOWED, share_of_rest, step_length, time_left
 from fe_contact.steppers.steps import Strike
 from lumped import Relaxation, Scene
 
 SEEDS = st.integers(0, 2**32 - 1)
+NO_CORNERS = np.empty(0)
 
 
 @given(SEEDS)
@@ -73,9 +74,38 @@ def test_steps_are_left_out_as_soon_as_they_jitter_more_than_they_tell(steps: in
     assert len(calmest(bump(steps, jitter)).x) == left + 1
 
 
+def crossing(steps: int, corners: int, jitter: float) -> Curve:
+    """The same while its edge crosses so many elements, its impulse off by what the edge's place in one says."""
+    smooth = bump(steps, 0.0)
+    within = np.sin(np.pi * corners * smooth.x) ** 2 * smooth.x**2
+    mean = smooth.mean_force + np.concatenate([[0.0], jitter * within[1:] / smooth.x[1:] ** 2])
+    return replace(smooth, mean_force=mean, radius_x=smooth.x, radius_squared=smooth.x**2)
+
+
+@pytest.mark.parametrize(("corners", "asked"), [(60, NO_CORNERS), (90, NO_CORNERS), (50, np.linspace(0.0, 1.0, 51))])
+def test_a_force_that_jitters_from_element_to_element_is_evened_or_read_at_corners(
+    corners: int, asked: np.ndarray
+) -> None:
+    """Rows left out by turns would stand anywhere within an element; of few elements steps are too short to tell."""
+    curve, time = crossing(256, corners, 1e-4), np.linspace(0.1, 0.9, 50)
+    true, calm = bump(256, 0.0).force(time), calmest_at_corners(curve, asked)
+    assert np.abs(calm.force(time) - true).max() < 0.03 * np.abs(curve.force(time) - true).max()
+
+
 @pytest.mark.parametrize("steps", [40, 80, 256])
 def test_a_smooth_force_keeps_its_steps(steps: int) -> None:
     assert len(calmest(bump(steps, 0.0)).x) == steps + 1
+
+
+def test_a_path_pressed_deeper_by_a_share_moves_the_end_by_that_share_where_the_surface_creeps() -> None:
+    """The dent is deeper, too; a striker that leaves slowly would else seem to be late by the whole change of depth."""
+    smooth, share = bump(64, 0.0), 1e-3
+    slow = replace(smooth.strike, mass=1.0 / (1.02 * smooth.strike.velocity))
+    path = replace(smooth, strike=slow, depth=np.sin(2.2 * smooth.x**2))
+    deeper = replace(path, depth=(1.0 + share) * path.depth)
+    creeping, other = (Variation(path, deeper, 1.0, creeps=creeps).errors["duration"] for creeps in (True, False))
+    assert creeping == pytest.approx(share * path.duration, rel=1e-6)
+    assert other == pytest.approx(share * path.dense.depth[path.shares >= LATE].max() / path.leaving_speed, rel=1e-6)
 
 
 def test_a_spike_between_two_rows_is_a_peak_like_any_other() -> None:

@@ -12,6 +12,7 @@ import pytest
 import fe_contact
 from fe_contact.budget import runs
 from fe_contact.budget.plan import BAND, SPARE, plan, scales
+from fe_contact.budget.variation import calmest
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.march.impact import march
@@ -157,8 +158,12 @@ def test_what_cannot_be_struck_says_so() -> None:
 
 
 @pytest.mark.tenth
-def test_what_finer_settings_fail_to_better_stands_with_its_bars() -> None:
-    """A cone whose first shorter steps touch no point of the mesh: the coarse answer is told, and not converged."""
+def test_what_finer_settings_fail_to_better_stands_with_its_bars(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A cone whose first shorter steps touch no point of the mesh: the coarse answer is told, and not converged.
+
+    Read where its edge meets corners it would be good enough.
+    """
+    monkeypatch.setattr(runs, "calmest_at_corners", lambda curve, _: calmest(curve))
     soft = Material(Relaxation(6.7e5, viscosity=9.8), 0.036)
     cone, layer = Cone(1.53), Layer(2.0e-4, "bonded")
     scene = Scene(cone, 1.22e-10, 0.303, soft, target=layer, model=Model(gravity=3.2e4))
