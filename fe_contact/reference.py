@@ -14,7 +14,7 @@ from fe_contact.budget import plan as statics
 from fe_contact.budget.budget import CAUSES, Budget, Solution, shares_of
 from fe_contact.budget.certify import Certified, certify
 from fe_contact.budget.plan import Plan
-from fe_contact.budget.refine import Finer, ImpactWay, dominant, refine
+from fe_contact.budget.refine import Finer, Growth, ImpactWay, missing, refine
 from fe_contact.budget.runs import operations
 from fe_contact.budget.several import Row, Several
 from fe_contact.errors import faults_of
@@ -42,6 +42,13 @@ if TYPE_CHECKING:
 
 CURE = "cure: a larger tolerance, or fewer numerics of your own"
 ROUNDS = 4  # refinements before giving up
+# Where an edge crosses elements bars fall with the mesh to 1.5; extrapolated steps err by order two at least.
+GROWTH = {
+    "mesh": Growth(order=1.5, step=1.1, most=2.0, work=2.0),
+    "penalty": Growth(order=1.0, step=2.0, most=8.0, work=0.1),
+    "time_step": Growth(order=2.0, step=1.1, most=2.0, work=0.7),
+    "far_field": Growth(order=2.0, step=1.5, most=2.0, work=0.3),
+}
 MOST_STEPS = 20_000  # of all marches of a round, about half a minute; the next one may take twice as many
 MOST_OPERATIONS = 5e12  # of a round, half a minute to two: contact problems reach 5e10 to 2e11 a second
 
@@ -184,8 +191,8 @@ class Statics:
         tolerance = found.numerics.tolerance
         if all(meets(part, tolerance) for part in found.parts):
             return Finer(None)
-        excess = {cause: max(shares_of(one, cause).max() for one in found.row) for cause in CAUSES}
-        settings = dominant(excess, found.numerics, self.chosen.pinned, least=1.0)
+        shares = {cause: np.concatenate([shares_of(one, cause) for one in found.row]) for cause in CAUSES}
+        settings = missing(shares, GROWTH, found.numerics, self.chosen.pinned)
         return Finer(settings, "" if settings is None else _too_dear(found, settings))
 
     def ledger(self, found: Certified) -> Sequence[LedgerEntry]:

@@ -17,7 +17,7 @@ from fe_contact import reference
 from fe_contact.budget.budget import CAUSES, SETTING
 from fe_contact.budget.certify import Certified, certify
 from fe_contact.budget.plan import plan
-from fe_contact.budget.refine import Finer, dominant, refine
+from fe_contact.budget.refine import Finer, dominant, missing, refine
 from fe_contact.budget.variation import Softening
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import solve
@@ -214,6 +214,20 @@ def test_refinement_touches_the_setting_of_its_cause_only(cause: str, scene_of: 
     assert {key for key in before if before[key] != after[key]} == {SETTING[cause]}
     assert after[SETTING[cause]] > before[SETTING[cause]]
     assert dominant(errors, numerics, (SETTING[cause],)) is None
+
+
+@pytest.mark.parametrize("cause", CAUSES)
+def test_a_bar_just_too_wide_takes_little_finer_settings(cause: str, scene_of: Scenes) -> None:
+    """A tenth above the tolerance: the penalty, which costs hardly anything, goes in larger steps."""
+    numerics: Numerics = plan(scene_of(MATERIALS["elastic"]), {}).numerics
+    shares = {one: np.array([1.1 if one == cause else 0.0]) for one in CAUSES}
+    finer = missing(shares, reference.GROWTH, numerics, ())
+    assert finer is not None
+    before, after = numerics.as_dict(), finer.as_dict()
+    assert {key for key in before if before[key] != after[key]} == {SETTING[cause]}
+    most = {"mesh": 1.25, "penalty": 2.0, "time_step": 1.3, "far_field": 1.5}[cause]
+    assert 1.0 < after[SETTING[cause]] / before[SETTING[cause]] <= most
+    assert after["steps"] % 4 == 0
 
 
 @dataclass
