@@ -300,7 +300,7 @@ def said(line: Line) -> str:
 
 
 def table(lines: list[Line]) -> str:
-    """Shares by kind: error and bar within the tolerance, cost within the goal by error and by bar; its median by bar."""
+    """Shares by kind: error and bar within the tolerance, cost within the goal by error and by bar, and its median."""
     rows = [
         "| kind | scenes | error met | bar met | cost by error | cost by bar | median |\n|---|---|---|---|---|---|---|"
     ]
@@ -341,7 +341,7 @@ def draw(lines: list[Line], where: Path) -> None:
         axes.set(yscale="log", ylabel="cost over the cheapest")
         axes.set_xticks(range(len(kinds)), kinds, rotation=40, ha="right")
         style.plain_numbers(axes.yaxis)
-        axes.legend(loc="upper left")
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2)
 
 
 def main() -> None:

@@ -95,6 +95,8 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/budget/plan.py", "STEPS_ORDER", ""): BEGINS,
     ("fe_contact/budget/plan.py", "_steps", ""): BEGINS,
     ("fe_contact/budget/plan.py", "FLAT_STEPS", ""): BEGINS,
+    ("fe_contact/budget/plan.py", "FLAT_ORDER", ""): BEGINS,
+    ("fe_contact/budget/plan.py", "_flat_steps", ""): BEGINS,
     ("fe_contact/budget/plan.py", "COARSE", ""): BEGINS,
     ("fe_contact/budget/plan.py", "_alike", ""): BEGINS,
     ("fe_contact/budget/runs.py", "Runs._placed", ""): BEGINS,
