@@ -21,7 +21,7 @@ from fe_contact.reference import plan
 from fe_contact.settings import Numerics
 from fe_contact.studies.tradeoff import study
 from fe_contact.studies.tradeoff.chart import plot_tradeoff
-from fe_contact.studies.tradeoff.point import REFERENCE, Point
+from fe_contact.studies.tradeoff.point import MEASURED, REFERENCE, Answer, Point, Truth
 from fe_contact.studies.tradeoff.study import Tradeoff, tradeoff, varied
 from fe_contact.studies.tradeoff.tried import LAW_TOLERANCES, ROW, ROW_ELEMENTS, asked_laws, variations
 from fe_contact.studies.tradeoff.verdict import (
@@ -133,6 +133,17 @@ def test_advice_names_the_cheapest_that_serves_and_the_cheapest_finite_elements(
 def test_a_bar_is_said_by_one_digit(bar: float) -> None:
     assert float(brief(bar)) == pytest.approx(bar, rel=0.5)
     assert re.fullmatch(r"\de-\d+", brief(bar))
+
+
+def test_a_force_that_is_cut_off_errs_by_nothing_for_a_digit_of_its_end() -> None:
+    """Two answers to one end time, which differ by rounding."""
+    time = np.linspace(0.0, 0.3, 20)
+    later = np.append(time[:-1], np.nextafter(0.3, 1.0))
+    values = dict.fromkeys(MEASURED)
+    one, other = (Answer({}, values, None, {}, rows, 1.0 + time) for rows in (time, later))
+    assert Truth.of(one).errors(other, smooth=True)["history"] < 1e-12
+    assert Truth.of(one).errors(other, smooth=False)["history"] < 1e-12
+    assert one.force_at(np.array([0.3001])) == 0.0
 
 
 def test_a_point_within_the_bar_of_the_truth_is_not_held_against_a_setting() -> None:

@@ -51,6 +51,7 @@ VISCOUS_ORDER = 0.18  # six elements instead of four at 1e-4
 STEPS_AT_DEFAULT = 40  # and no fewer at any tolerance: halved twice, they still tell something
 STEPS_ORDER = 0.176  # steps grow with tolerance to this power: 60 at 1e-4
 FLAT_STEPS = 4  # as many under a flat end: its area presses at once, whatever relaxes fast, and a step is one sum
+FLAT_ORDER = 2  # with which bars fall there, so that looser tolerances take fewer
 AT_TOUCH = 1e-12  # share of the contact before which a peak is the touch itself, but for rounding
 SOONEST_PEAK = 1e-6  # share of the contact below which the time grid would lose its digits
 EARLY_PEAK = 0.28  # a force that peaks before this share of the contact needs more steps in proportion
@@ -86,7 +87,7 @@ def plan(scene: Scene, given: Given) -> Plan:
     contact_time = size.duration or (min(held, scene.end_time) if scene.gravity > 0.0 else scene.end_time)
     peak_share = share_of_peak(size.peak_time, contact_time)
     placed = chosen.varied(
-        steps=_steps(tolerance, peak_share, FLAT_STEPS if _flat(scene) else _finer(scene)),
+        steps=_steps(tolerance, peak_share, _flat_steps(tolerance) if _flat(scene) else _finer(scene)),
         contact_radius=_meshed_radius(scene, SPARE * size.contact_radius) if _stays(scene) else size.contact_radius,
         contact_time=contact_time,
         peak_share=peak_share,
@@ -150,6 +151,11 @@ def _steps(tolerance: float, peak_share: float, finer: float) -> int:
     early = max(1.0, EARLY_PEAK / peak_share)
     wanted = early * STEPS_AT_DEFAULT * max(DEFAULT_TOLERANCE / tolerance, 1.0) ** STEPS_ORDER
     return int(min(4 * math.ceil(finer * math.ceil(wanted / 4)), RANGES["steps"][1]))
+
+
+def _flat_steps(tolerance: float) -> float:
+    """Steps under a flat end over those of most scenes."""
+    return max(FLAT_STEPS * math.pow(min(DEFAULT_TOLERANCE / tolerance, 1.0), 1.0 / FLAT_ORDER), 1.0)
 
 
 def scales(scene: Scene, numerics: Numerics) -> mdr.ImpactScales:

@@ -87,8 +87,10 @@ class Answer:
         return cls(result.numerics, values_of(result), bar, work, history.time[rows], history.force[rows])
 
     def force_at(self, time: Array) -> Array:
-        """Force at other times, N: linear between the rows, zero outside them."""
-        return np.asarray(np.interp(time, self.time, self.force, left=0.0, right=0.0))
+        """Force at other times, N: linear between the rows, zero outside them; a force that is cut off ends there."""
+        end = self.time[-1]
+        times = np.where(np.abs(time - end) <= ROUNDING * end, end, time)
+        return np.asarray(np.interp(times, self.time, self.force, left=0.0, right=0.0))
 
 
 @dataclass(frozen=True, eq=False)
