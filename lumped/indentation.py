@@ -235,7 +235,8 @@ def indent(
     if method in HALF_SPACE_ALONE and indenter.target.has_length:
         reason = f"{method} knows the half-space alone; accepted: another method, or half_space without a datum"
         raise BadInput(Fault(indenter.source, "target.shape", reason))
-    clock, indenter = Clock(), replace(indenter, model=replace(indenter.model, kinematics="small"))
+    resolved = replace(indenter.model, kinematics="small", plasticity=False)
+    clock, indenter = Clock(), replace(indenter, model=resolved)
     depth, modulus = np.array(indenter.checked(depths)), indenter.modulus(instant)
     shape = indenter.shape.resolved("parabola") if method == "hertz" else indenter.profile
     with indenter.addressed():

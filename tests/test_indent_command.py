@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fe_contact import indentation
 from fe_contact.cli import main
-from lumped.errors import BadInput
+from lumped.errors import BadInput, NotReached
 from lumped.scene.indenter import Indenter
 from lumped.schema.files import SCENES
 
@@ -132,6 +133,18 @@ def test_a_method_that_does_not_know_the_body_is_refused(
     method: str, target: str, reason: str, write: Any, refused: Callable[..., list[str]]
 ) -> None:
     assert reason in refused("indent", write(target=target), "--depths", "1e-5", "--method", method)[0]
+
+
+@pytest.mark.parametrize("name", ["steel-ball-plastic", "polymer-sphere-finite"])
+def test_the_cheapest_is_no_law_that_leaves_out_what_is_asked(
+    name: str, empty: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def pressed(*_: Any) -> Any:
+        raise NotReached("by finite elements")
+
+    monkeypatch.setattr(indentation, "indent", pressed)
+    assert main(["indent", name, "--depths", "1e-6", "--method", "cheapest"]) == 3
+    assert capsys.readouterr().err == "by finite elements\n"
 
 
 def test_hertz_is_the_parabola(write: Any, empty: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+from pathlib import Path
 
 import pytest
 
@@ -30,6 +31,23 @@ def test_an_effect_says_its_size_and_the_option_that_includes_it() -> None:
     assert (
         falls.line(1e-3) == "gravity (neglected): 304 %, above the tolerance; to include it: --set model.gravity=9.81"
     )
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "run steel-ball-plastic --method ting",
+        "indent steel-ball-plastic --method mdr --depths 1e-5",
+        "run polymer-sphere-waves --method mdr",
+        "run steel-ball --method hertz",
+    ],
+)
+def test_what_a_law_leaves_out_of_the_scene_is_not_asked_of_the_scene(
+    command: str, empty: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Plasticity, waves, the true profile: the key that selects them is set already."""
+    assert main([*command.split(), "--tolerance", "1e-5"]) == 0
+    assert capsys.readouterr().err.endswith("; to include it, as the scene asks: --method fe\n")
 
 
 @pytest.mark.parametrize("effect", ["gravity", "target inertia", "constant nu against constant bulk modulus"])

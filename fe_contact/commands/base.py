@@ -25,7 +25,7 @@ from lumped.result.folder import publish
 from lumped.result.result import Result, worst
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
-from lumped.scene.tables import load, load_indenter
+from lumped.scene.tables import Model, load, load_indenter
 from lumped.schema import Table
 from lumped.schema.files import SCENES, overridden, parse_assignment, parsed
 
@@ -281,15 +281,27 @@ def report(
     lines: Sequence[str],
     where: Path,
     title: str,
+    asked: Model,
 ) -> int:
-    """Say what was found, warn of a tolerance not reached and of a model that is too small; the exit code."""
+    """Say what was found, warn of a tolerance not reached and of a model that is too small; the exit code.
+
+    ``asked``: the scene's own model.
+    """
     missed = "" if result.converged else result.message  # said once, on stderr
     say(args, content, [*(line for line in lines if line != missed), f"written to {where}"], title)
     if missed:
         complain(missed)
     if not result.model_sufficient:
-        complain(f"the model is too small for the tolerance: {worst(result.model_ledger).sentence}")
+        complain(f"the model is too small for the tolerance: {_left_out(result, asked)}")
     return DONE if result.converged else NOT_REACHED
+
+
+def _left_out(result: Result | Indentation, asked: Model) -> str:
+    """The largest effect left out, and its cure: another method, where a law leaves out what the scene asks for."""
+    entry = worst(result.model_ledger)
+    if entry.key.startswith("model.") and getattr(asked, entry.key.removeprefix("model.")) == entry.value:
+        return f"{entry.sentence.removesuffix(entry.cure)}to include it, as the scene asks: --method fe"
+    return entry.sentence
 
 
 def complain(message: str) -> None:

@@ -34,7 +34,7 @@ def execute(args: argparse.Namespace) -> int:
     for remark in remarks:
         base.complain(remark)
     title = f"{scene.name}: against finite elements"
-    return base.report(args, comparison.reference, content, content["verdict"], run.where, title)
+    return base.report(args, comparison.reference, content, content["verdict"], run.where, title, scene.model)
 
 
 def law_names(text: str | None) -> tuple[str, ...]:

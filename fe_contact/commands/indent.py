@@ -26,7 +26,7 @@ def execute(args: argparse.Namespace) -> int:
     found = _indented(args, indenter, depths, given)
     content = publish(where, found.write_files)
     title, *lines = found.summary().split("\n  ")
-    return base.report(args, found, content, lines, where, title)
+    return base.report(args, found, content, lines, where, title, indenter.model)
 
 
 def _indented(args: argparse.Namespace, indenter: Indenter, depths: tuple[float, ...], given: Table) -> Indentation:
@@ -43,7 +43,7 @@ def _indented(args: argparse.Namespace, indenter: Indenter, depths: tuple[float,
     from lumped.indentation import indent as closed_form
 
     tolerance = given.get("tolerance", DEFAULT_TOLERANCE)
-    if args.method == "cheapest" and indenter.model.finite:
+    if args.method == "cheapest" and (indenter.model.finite or indenter.model.plasticity):
         return by_elements(indenter, depths, given, args.instant, progress)
     if args.method != "cheapest":
         return closed_form(indenter, depths, args.method, args.instant, tolerance)

@@ -56,7 +56,7 @@ def _impact(args: argparse.Namespace, scene: Scene, table: Table, where: Path, t
         result, solved = simulate(scene, args.method, table, progress=base.progress_of(args)), None
     content = publish(where, lambda folder: _write(args, solved, result, folder))
     title, *lines = result.summary().split("\n  ")
-    return base.report(args, result, content, [*taken, *_weighed(result), *lines], where, title)
+    return base.report(args, result, content, [*taken, *_weighed(result), *lines], where, title, scene.model)
 
 
 def _weighed(result: Result) -> list[str]:

@@ -120,7 +120,8 @@ def read_curve(path: Path) -> Curve:
     if not time[-1] > time[0]:
         raise BadInput(Fault(source, header.time.header, f"every row is at {time[0]:g} s; accepted: times that grow"))
     if force.max() <= 0.0:
-        reason = "never above zero; accepted: compression positive; cure: multiply it by -1"
+        cure = "multiply it by -1" if force.min() < 0.0 else "a column in which the bodies press"
+        reason = f"never above zero; accepted: compression positive; cure: {cure}"
         raise BadInput(Fault(source, header.force.header, reason))
     separated = {",": "", ";": "semicolons separate the columns", "\t": ""}[header.separator]
     told = (*header.remarks, separated, "commas are decimal" if commas else "")

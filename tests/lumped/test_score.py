@@ -114,7 +114,8 @@ def test_measured_curve_is_read_and_scored(tmp_path: Path) -> None:
         ("time_s,force_N\n0,1\n", "at least two rows"),
         ("time_s,force_N\n0,1\n1,nan\n", "finite"),
         ("time_s,force_N\n1,1\n0,2\n", "decreases"),
-        ("time_s,force_N\n0,-1\n1,-2\n", "never above zero"),
+        ("time_s,force_N\n0,-1\n1,-2\n", "never above zero.*cure: multiply it by -1"),
+        ("time_s,force_N\n0,0\n1,0\n", "never above zero.*cure: a column in which"),
     ],
 )
 def test_bad_measured_curves_are_named(tmp_path: Path, text: str, message: str) -> None:

@@ -324,7 +324,8 @@ class _Reader:
             path = beside if exists(beside) and beside.is_file() else SCENES.resolved(str(scene))
             return BaseScene(parsed(path), path.name, path.parent.absolute())
         except BadInput as bad:
-            self.faults += [Fault(self.source, "scene", fault.message) for fault in bad.faults]
+            said = shown(str(scene))
+            self.faults += [Fault(self.source, "scene", f"{said}: {fault.message}") for fault in bad.faults]
             return None
 
     def common_faults(self, sweep: Sweep) -> list[Fault]:
