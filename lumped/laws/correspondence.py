@@ -104,12 +104,13 @@ class HereditaryForce(ForceLaw):
         self, steps: Sequence[Step], place: NDArray[np.intp], share: Array, depth: Array, rate: Array, stage: Stage
     ) -> Array:
         """F from the memories, polynomials through their values at the points and at the start of each step."""
-        force = np.zeros_like(depth)
+        force, (load, slope) = np.zeros_like(depth), map(np.asarray, self.load.load_and_slope(depth))
         for index in np.unique(place):
             here, step = place == index, steps[index]
             there = StepLoad.of(self.load, step.start.memory, step.length, NODES)
             values = np.column_stack([there.memory, there.memories(np.maximum(step.depth, TINY))])
-            force[here] = self.load.force(depth[here], rate[here], values @ through_zero(share[here]).T)
+            remembered = values @ through_zero(share[here]).T
+            force[here] = self.load.pressing(load[here], slope[here], rate[here], remembered)
         return force
 
     def returned(self, bodies: Bodies, last: State) -> tuple[float, State] | None:

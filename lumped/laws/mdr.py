@@ -25,7 +25,8 @@ FORCE, SEEN = 4, [1, 2, 4, 5]
 # more elements says: one of eight would make them uneven, and many finer ones needed.
 INTERVALS, ELEMENTS = 8, 16
 MOST_PARTS = 512  # 4096 steps, which err by rounding
-# So many marches of which none halves the widest bar that was before: what is left of it is rounding.
+# So many marches of which none halves the widest bar that was before, while the history is known as well as asked:
+# what is left of that bar is rounding.
 STALLED, NO_BETTER = 2, 0.5
 # Rows through which the polynomials of a rebound run that goes on beyond the end.
 ROWS_BEYOND = 6
@@ -82,7 +83,8 @@ class SpringRow:
                     others, least = bars(answer, _answer(scene, levels[-2]), 1.0)
                     quantities, force_error = wider(quantities, others), max(force_error, least)
                 widest.append(largest_bar(quantities))
-                if meets(quantities, tolerance) or _stalled(widest):
+                known = (quantities["history_l2"].error or 0.0) <= tolerance
+                if meets(quantities, tolerance) or (known and _stalled(widest)):
                     break
         work = {"steps": sum(level.steps for level in levels), "springs": levels[-1].approach.shape[1]}
         numerics = {"levels": len(levels), "parts": parts}
@@ -116,7 +118,7 @@ def estimate(scene: Scene, elements: int = 70) -> ImpactScales:
 
 
 def _stalled(widest: Sequence[float]) -> bool:
-    """Whether the last marches, by the widest bar after each, found rounding alone."""
+    """Whether the last marches, by the widest bar after each, found nothing that the ones before had not."""
     return len(widest) > STALLED and min(widest[-STALLED:]) > NO_BETTER * min(widest[:-STALLED])
 
 

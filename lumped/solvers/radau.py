@@ -108,9 +108,13 @@ def place_of(share: Array, power: Array, begun: Array, mirrored: NDArray[np.bool
 
 def through_zero(share: Array, count: int = STAGES) -> Array:
     """Weights, shape (n, s + 1), of the values at zero and at the points in the polynomial through them all."""
-    places = np.concatenate([[0.0], radau(count).points])
-    basis = legendre.legvander(2.0 * share - 1.0, count)
-    return np.asarray(basis @ np.linalg.inv(legendre.legvander(2.0 * places - 1.0, count)))
+    return np.asarray(legendre.legvander(2.0 * share - 1.0, count) @ _legendre_through_zero(count))
+
+
+@cache
+def _legendre_through_zero(count: int) -> Array:
+    """The matrix (n + 1, n + 1) from values at zero and at n points to the Legendre coefficients of the polynomial."""
+    return np.asarray(np.linalg.inv(legendre.legvander(2.0 * np.append(0.0, radau(count).points) - 1.0, count)))
 
 
 @cache
