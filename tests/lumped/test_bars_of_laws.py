@@ -276,6 +276,15 @@ def test_an_impulse_cut_off_is_known_to_rounding_and_no_better(uncovered: Callab
     assert not uncovered(law.simulate(scene, 0.1), law.simulate(scene, 1e-9))
 
 
+def test_an_impulse_cut_off_under_a_weight_is_known_as_well_as_one_that_is_not() -> None:
+    """When it is cut off is no matter of numbers."""
+    spring = Scene(None, 1.0, 0.5, law=LawChoice("hertz", {"k": 1e7}), model=Model(gravity=9.81))
+    cut = replace(spring, motion=Motion(end_time=2e-3))
+    for scene in (spring, cut):
+        impulse = simulate(laws.get("hertz").of(scene), scene, 1e-6).quantities["impulse"]
+        assert impulse.error < 1e-12 * impulse.value
+
+
 def test_a_law_that_meets_no_tolerance_ends_at_its_tightest(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(_hereditary, "meets", lambda quantities, tolerance: False)
     scene = Scene.load("polymer-sphere")
