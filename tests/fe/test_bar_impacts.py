@@ -258,6 +258,13 @@ def test_the_ledger_has_the_lateral_inertia_of_rayleigh_s_bar() -> None:
     assert entry.estimate == pytest.approx((0.3 / 10.0) ** 2 / math.pi)
 
 
+def test_the_ledger_has_the_strain_behind_the_front_of_a_wave() -> None:
+    """v/c: 10 m/s over the 15 m/s of 900 Pa and 4 kg/m3."""
+    scene = Scene.load("bar-impact", {"striker.material.density": 4.0})
+    entry = next(one for one in plan(scene, {}).ledger if one.effect == "finite strain")
+    assert entry.spread == pytest.approx((-10.0 / 15.0, 10.0 / 15.0))
+
+
 def test_an_end_before_the_separation_is_no_separation() -> None:
     scene = replace(Scene.load("bar-impact"), motion=Motion(end_time=0.3))
     result = fe_contact.run(scene, numerics={"steps": 100})

@@ -11,7 +11,7 @@ import pytest
 from fe_contact import run
 from fe_contact.reference import check, plan
 from fe_contact.targets.base import TARGETS as MESHED
-from lumped import FeContactError, Scene
+from lumped import FeContactError, Scene, laws, simulate
 from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.result import NO_KEY
 from lumped.schema.files import SCENES
@@ -91,3 +91,12 @@ def test_a_blocks_own_waves_press_as_the_ledger_says(campaign_size: Callable[[in
         (entry,) = [one for one in still.model_ledger if one.effect == "target inertia"]
         peaks = [one.quantities["peak_force"].value or math.nan for one in (moving, still)]
         assert 0.5 < (peaks[0] / peaks[1] - 1.0) / (entry.estimate or math.inf) < 2.0, keys
+
+
+def test_what_is_planned_says_what_the_exact_impact_does() -> None:
+    """To a twentieth, of what waves and a held bulk modulus take."""
+    scene = Scene.load("polymer-sphere")
+    exact = {entry.effect: entry.estimate for entry in simulate(laws.ting.of(scene), scene, 1e-4).model_ledger}
+    planned = {entry.effect: entry.estimate for entry in plan(scene, {}).ledger}
+    for effect in ("target inertia", "constant nu against constant bulk modulus"):
+        assert planned[effect] == pytest.approx(exact[effect], rel=0.05), effect

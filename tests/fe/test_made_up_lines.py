@@ -10,7 +10,7 @@ import pytest
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.variation import SAFETY
-from fe_contact.waves.line import AWAY, Line, Run
+from fe_contact.waves.line import AWAY, UNSHOWN, Line, Run, _ended_later
 from fe_contact.waves.line_reading import FORCE, TIME, RodReading
 from fe_contact.waves.targets._block import plan
 from lumped import Scene
@@ -137,3 +137,28 @@ def test_a_contact_may_go_on_while_the_gap_is_smaller_than_its_error() -> None:
     assert found.quantities["duration"].error == pytest.approx(
         found.error("duration", "mesh") + found.error("duration", "time_step")
     )
+
+
+def thrown_back(moved: float, lower: float) -> Run:
+    """Two contacts in units of END, a flight between them in which gravity turns the mass, at twice its speed over END.
+
+    The first ends so much ``moved``, and the gap of the flight is so much ``lower``, m.
+    """
+    time = END * np.linspace(0.0, 3.0, 3001)
+    flown = np.clip(time - END, 0.0, END)
+    speed, gap = 2.0 * SPEED * flown / END - SPEED, SPEED * flown * (1.0 - flown / END)
+    rows = np.array([time, np.zeros_like(time), speed, np.zeros_like(time), lower - gap])
+    contacts = {"start": 0.0, "duration": END * (1.0 + moved)}, {"start": 2.0 * END, "duration": END}
+    return Run(reading(rows), {}, time.size - 1, time.size, contacts)
+
+
+def test_gravity_changes_the_speed_for_as_long_as_a_first_contact_may_end_later() -> None:
+    """By what the steps move its end, over a safety that does not count here, or by how long it may faintly go on."""
+    fine, moved, lower = thrown_back(0.0, 0.0), 0.03, 0.02 * SPEED * END
+    by_steps = _ended_later(fine, thrown_back(moved, 0.0))
+    assert by_steps["duration"] == pytest.approx(0.0, abs=2e-3 * END)
+    assert by_steps["restitution"] == pytest.approx(2.0 * moved / UNSHOWN, rel=1e-6)
+    faintly = _ended_later(fine, thrown_back(0.0, lower))
+    later = 0.5 - np.sqrt(0.25 - 0.02)  # the gap is still as small
+    assert faintly["duration"] == pytest.approx(later * END, rel=0.06)
+    assert faintly["restitution"] == pytest.approx(2.0 * faintly["duration"] / END)

@@ -21,7 +21,9 @@ from fe_contact.plastic import ground
 from fe_contact.plastic.course import Course, PlasticLoading, Varied, settings
 from fe_contact.plastic.fields import STRESS, PressedAgain
 from fe_contact.plastic.impact import SPRUNG, Answered, Rebound, _at_most, _release, plan
+from fe_contact.plastic.indent import _onwards
 from fe_contact.plastic.path import FIRST_RELEASED, RELEASED, PlasticFlowSlow, Presser, Station
+from fe_contact.settings import Numerics
 from fe_contact.solids.newton import MOST_ITERATIONS
 from fe_contact.steppers.steps import Work
 from fe_contact.studies.compare.study import compare
@@ -270,6 +272,37 @@ def test_two_meshes_that_agree_by_chance_do_not_close_the_bar() -> None:
 
     assert bar(1.0, 1.0, 1.1) > 0.1
     assert bar(1.01, 1.01 + 0.01 * (math.sqrt(2.0) - 1.0), 1.02) == pytest.approx(1.25 * 0.01)
+
+
+@pytest.mark.parametrize("cause", ["mesh", "penalty", "time_step", "far_field"])
+def test_an_entry_covers_what_its_own_setting_leaves_and_the_square_of_the_steps_counts_out(
+    cause: str, hertz_strike: Callable[..., Any], settings_of: Callable[..., Numerics]
+) -> None:
+    """Errors of order one, and of two by how far away the body ends, which is half as far where it is cut."""
+    numerics = settings_of(hertz_strike(), steps=48)
+
+    def run(given: Numerics, cut: bool) -> Array:
+        off = {"mesh": 1.0 / given.elements_per_contact, "penalty": 1.0 / given.penalty}
+        off |= {"time_step": 1.0 / given.steps, "far_field": 4e-2 if cut else 1e-2}
+        return np.array([1.0 + off[cause] + 1.0 / given.steps**2])
+
+    told = Varied.of(run, numerics)
+    error = float(abs(told.mended(_onwards) - 1.0)[0])
+    bars = {of: sum(one.factor * float(abs(one.first - one.second)[0]) for one in pairs)
+            for of, pairs in told.pairs(_onwards).items()}  # fmt: skip
+    assert 0.0 < error <= bars.pop(cause) < 1.3 * error
+    assert max(bars.values()) < 1e-9
+
+
+@pytest.mark.parametrize("rim", [False, True])
+def test_a_body_that_is_cut_ends_half_as_far_away(rim: bool) -> None:
+    """In a quarter disc, but for the elements that the cut goes through."""
+    far = 12.0
+    mesh = ground._mesh(ground.Sizes(elements=2.0, order=2, smallest=0.3, far_radius=far, rim=rim, cut=True))
+    (ar, az), (br, bz), (cr, cz) = (mesh.p[:, corner] for corner in mesh.t)
+    area = 0.5 * np.abs((br - ar) * (cz - az) - (cr - ar) * (bz - az)).sum()
+    assert area == pytest.approx(0.25 * np.pi * (0.5 * far) ** 2, rel=0.2)
+    assert 0.45 * far < np.hypot(*mesh.p).max() < 0.75 * far
 
 
 def test_a_first_step_that_reaches_no_point_of_the_mesh_is_no_force() -> None:

@@ -187,16 +187,24 @@ def test_an_end_is_known_to_1e_10_whatever_is_asked(campaign_size: Callable[[int
 
 
 def test_rounding_where_a_weight_presses_far_deeper_than_the_velocity() -> None:
-    """It is rounding of the depth of the weight, large beside a velocity a thousand times slower than the swing."""
+    """It is rounding of the depth of the weight, large beside a velocity a thousand times slower than the swing.
+
+    As large in any unit of time: where all is twenty times slower too.
+    """
     rng = np.random.default_rng(77)
     for _ in range(8):
         scene, _ = weighed_spring(rng)
         swing = scene.gravity * math.sqrt(scene.mass / scene.law.values["k"])
-        scene = replace(scene, velocity=swing * 10.0 ** rng.uniform(-3.5, -2.0))
-        found = laws.linear_spring.of(scene).simulate(scene, 1e-2).quantities
-        for name, value in swing_of(scene).items():
-            assert abs(found[name].value - value) <= found[name].error, (name, scene)
-        assert found["restitution"].error < 1e-6
+        scene, bars_told = replace(scene, velocity=swing * 10.0 ** rng.uniform(-3.5, -2.0)), list[float]()
+        weak = LawChoice("linear_spring", {"k": scene.law.values["k"] / 20.0**2})
+        slow = replace(scene, velocity=scene.velocity / 20.0, law=weak, model=Model(gravity=scene.gravity / 20.0**2))
+        for one in (scene, slow):
+            found = laws.linear_spring.of(one).simulate(one, 1e-2).quantities
+            for name, value in swing_of(one).items():
+                assert abs(found[name].value - value) <= found[name].error, (name, one)
+            bars_told.append(found["restitution"].error)
+        assert bars_told[0] < 1e-6
+        assert bars_told[1] == pytest.approx(bars_told[0], rel=0.2)
 
 
 def test_what_creeps_to_rest_under_its_weight_is_said_to_rest() -> None:
@@ -274,6 +282,15 @@ def test_an_impulse_cut_off_is_known_to_rounding_and_no_better(uncovered: Callab
     )  # fmt: skip
     law = laws.get("kuwabara_kono").of(scene)
     assert not uncovered(law.simulate(scene, 0.1), law.simulate(scene, 1e-9))
+
+
+def test_an_impulse_cut_off_under_a_weight_is_known_as_well_as_one_that_is_not() -> None:
+    """When it is cut off is no matter of numbers."""
+    spring = Scene(None, 1.0, 0.5, law=LawChoice("hertz", {"k": 1e7}), model=Model(gravity=9.81))
+    cut = replace(spring, motion=Motion(end_time=2e-3))
+    for scene in (spring, cut):
+        impulse = simulate(laws.get("hertz").of(scene), scene, 1e-6).quantities["impulse"]
+        assert impulse.error < 1e-12 * impulse.value
 
 
 def test_a_law_that_meets_no_tolerance_ends_at_its_tightest(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from lumped import BadInput, Motion, Result, Scene, laws, simulate
-from lumped.laws import mdr
+from lumped.laws import correspondence, mdr
 from lumped.scene.tables import LawChoice, read
 
 BARE: dict[str, Any] = {
@@ -208,3 +208,15 @@ def test_laws_that_take_their_restitution_from_the_material_ask_the_exact_law_on
     made = [laws.get(name).of(one) for name in DAMPED for one in (scene, replace(scene, law=LawChoice(name, {})))]
     assert len(made) == 2 * len(DAMPED) > 10
     assert len(asked) == 1
+
+
+def test_the_correspondence_law_leaves_out_what_a_scene_says_that_it_does() -> None:
+    """That no surface pulls or recovers, where the scene's own law lets it; else that a contact shrinks otherwise."""
+    name = "polymer-sphere"
+    pulls, usual, other = (
+        Scene.load(name, {"law": law})
+        for law in ({"name": "correspondence", "exit": "depth"}, {"name": "correspondence"}, {"name": "ting"})
+    )
+    assert "pulls" in correspondence.leaves_out(pulls)
+    assert "shrinks otherwise" in correspondence.leaves_out(usual)
+    assert correspondence.leaves_out(usual) == correspondence.leaves_out(other)
