@@ -32,10 +32,11 @@ if TYPE_CHECKING:
 
 ROUNDS = 4  # refinements before giving up
 # Where an edge crosses elements bars fall with the mesh to 1.5; extrapolated steps err by order two at least. What an
-# edge does by chance changes bars by a half: smaller steps than these may find nothing better.
+# edge does by chance changes bars by a half: smaller steps than these may find nothing better, and a round of larger
+# ones may not be afforded.
 GROWTH = {
-    "mesh": Growth(order=1.5, step=1.5, most=2.25, work=2.0),
-    "penalty": Growth(order=1.0, step=2.0, most=8.0, work=0.1),
+    "mesh": Growth(order=1.5, step=1.5, most=1.5, work=2.0),
+    "penalty": Growth(order=1.0, step=2.0, most=4.0, work=0.1),
     "time_step": Growth(order=2.0, step=2.0, most=2.0, work=0.7),
     "far_field": Growth(order=2.0, step=2.0, most=2.0, work=0.3),
 }
