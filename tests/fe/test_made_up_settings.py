@@ -96,7 +96,7 @@ def test_an_entry_covers_its_own_setting(
         curve=lambda number, given: Curve.of(answer(given), STRIKE),
         surface=lambda given: SimpleNamespace(follows_contact=follows_contact),
     )
-    curve, changes = certify._judged(runs, 0, base, alone=False)
+    curve, changes = certify._judged(runs, runs.curve, 0, base, alone=False)
     nothing: Any = None
     found, errors = Budget(curve, nothing, changes, nothing, nothing), off(curve)
     for name in QUANTITIES:
@@ -174,7 +174,7 @@ def test_a_jitter_that_no_step_lessens_asks_for_a_finer_mesh_but_of_what_swings(
         return Curve.of(jittering, strike)
 
     runs: Any = SimpleNamespace(curve=curve, surface=lambda given: SimpleNamespace(follows_contact=True))
-    value, changes = certify._judged(runs, 0, settings, alone=False)
+    value, changes = certify._judged(runs, runs.curve, 0, settings, alone=False)
     nothing: Any = None
     found = Budget(value, nothing, changes, nothing, nothing)
     assert (found.error("impulse", "mesh") > 0.0) == finer_mesh, "two meshes jitter alike here"

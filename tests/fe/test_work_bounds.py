@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from fe_contact.errors import BodyTooFine, TooManySteps, WavesTooDear
 from fe_contact.march import impact
 from fe_contact.march.impacts import Grounded
 from fe_contact.methods import simulate
+from fe_contact.settings import Numerics
 from fe_contact.targets.base import struck
 from fe_contact.waves import line, plan
 from fe_contact.waves.certify import WaveRuns
@@ -83,11 +85,11 @@ def test_what_keeps_bars_from_the_tolerance_is_said_and_what_is_reached(
 
 def test_finer_rounds_stay_within_the_work_that_was_predicted(monkeypatch: pytest.MonkeyPatch) -> None:
     """The operations counted of a round are those predicted from the one before, within a factor of two."""
-    scene, counted, most = Scene.load("polymer-layer"), list[float](), 1.5e10
+    scene, rounds, most = Scene.load("polymer-layer"), list[tuple[Numerics, float]](), 1e11
 
     def certified(*given: Any) -> Any:
         found = certify(*given)
-        counted.append(operations(found.work, found.surface))
+        rounds.append((found.numerics, operations(found.work, found.surface)))
         return found
 
     monkeypatch.setattr("fe_contact.reference.certify", certified)
@@ -96,8 +98,10 @@ def test_finer_rounds_stay_within_the_work_that_was_predicted(monkeypatch: pytes
     predicted = re.search(r"about (\S+) operations: accepted up to", found.message)
     assert predicted is not None
     assert float(predicted[1]) > most
-    first, second = counted
-    assert 0.5 < second / (2.0 * 1.5**3 * first) < 2.0
+    assert len(rounds) > 1
+    for (coarse, first), (fine, second) in pairwise(rounds):
+        finer = fine.steps / coarse.steps * (fine.elements_per_contact / coarse.elements_per_contact) ** 3
+        assert 0.5 < second / (finer * first) < 2.0
 
 
 def test_a_word_is_said_before_and_while_bodies_are_meshed(monkeypatch: pytest.MonkeyPatch) -> None:
