@@ -5,22 +5,25 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import fe_contact
 from fe_contact.budget import runs
+from fe_contact.budget.certify import Certified, certify
 from fe_contact.budget.plan import BAND, SPARE, plan, scales
-from fe_contact.budget.variation import calmest
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.march.impact import march
+from fe_contact.settings import Numerics
 from fe_contact.steppers.steps import Strike
 from fe_contact.steppers.struck import WIDTH, FixedStepper
 from fe_contact.targets.base import struck
 from fe_contact.targets.layer import meshed
 from lumped import BadInput, Material, Model, Relaxation, Result, Scene, Sphere, laws, simulate
+from lumped.errors import NotReached
 from lumped.result.score import normalized_error
 from lumped.shapes.cone import Cone
 from lumped.shapes.cylinder import Cylinder
@@ -159,15 +162,21 @@ def test_what_cannot_be_struck_says_so() -> None:
 
 @pytest.mark.tenth
 def test_what_finer_settings_fail_to_better_stands_with_its_bars(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A cone whose first shorter steps touch no point of the mesh: the coarse answer is told, and not converged.
+    """A cone on a thin layer: where no finer march ended, the coarse answer is told, and not converged."""
+    asked = list[Numerics]()
 
-    Read where its edge meets corners it would be good enough.
-    """
-    monkeypatch.setattr(runs, "calmest_at_corners", lambda curve, _: calmest(curve))
+    def certified(*given: Any) -> Certified:
+        asked.append(given[2])
+        if len(asked) > 1:
+            raise NotReached("made up")
+        return certify(*given)
+
+    monkeypatch.setattr("fe_contact.reference.certify", certified)
     soft = Material(Relaxation(6.7e5, viscosity=9.8), 0.036)
     cone, layer = Cone(1.53), Layer(2.0e-4, "bonded")
     scene = Scene(cone, 1.22e-10, 0.303, soft, target=layer, model=Model(gravity=3.2e4))
     found, truth = fe_contact.run(scene, TOLERANCE), exact(scene)
+    assert len(asked) == 2
     assert not found.converged
     for name in ("peak_force", "peak_depth"):
         value, true = found.quantities[name], truth.quantities[name]
