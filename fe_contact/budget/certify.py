@@ -338,7 +338,7 @@ def trust(curves: tuple[Curve, Curve, Curve], order: int, steps: tuple[float, fl
     force: float = _trusted_order(*curves, order)
     if order == 1 and not flat and not relaxation.is_elastic:
         force = order
-    duration = _order_of_duration(*curves, order)
+    duration, restitution = _order_of_duration(*curves, order), _order_of_restitution(*curves, order)
     shortest, longest = np.divide.outer(steps, relaxation.times)
     within_step = bool(np.any((longest > ABOUT_A_STEP[0]) & (shortest < ABOUT_A_STEP[1])))
     fast, dashpots = _shares(curves[0], 2.0 * longest > ABOUT_A_STEP[0])
@@ -348,7 +348,12 @@ def trust(curves: tuple[Curve, Curve, Curve], order: int, steps: tuple[float, fl
     else:
         summed = force if relaxation.is_elastic else min(force, order - dashpots - fast)
     force = min(force, order + 1 - dashpots - fast)
-    orders = {"impulse": summed, "restitution": summed, "peak_depth": summed, "duration": min(force, duration)}
+    orders = {
+        "impulse": summed,
+        "restitution": min(summed, restitution),
+        "peak_depth": summed,
+        "duration": min(force, duration),
+    }
     return Trust({"force": force} | orders, fast if within_step else 0.0)
 
 
@@ -371,8 +376,22 @@ def _order_of_duration(fine: Curve, half: Curve, quarter: Curve, order: int) -> 
     first, second, third = (curve.quantities["duration"] for curve in (fine, half, quarter))
     if first is None or second is None or third is None:
         return order + 1
-    shown = order if abs(third - second) >= NEARLY * 2**order * abs(second - first) else 1
-    return shown + (abs(third - second) <= ASYMPTOTIC * first)
+    return _shown(first, second, third, order) + (abs(third - second) <= ASYMPTOTIC * first)
+
+
+def _order_of_restitution(fine: Curve, half: Curve, quarter: Curve, order: int) -> int:
+    """The same of the restitution, which is the root of an energy: of a striker that a weight hardly lets go, few steps
+    say little.
+    """
+    first, second, third = (curve.quantities["restitution"] for curve in (fine, half, quarter))
+    if first is None or second is None or third is None or abs(third - second) <= ASYMPTOTIC:
+        return order + 1
+    return _shown(first, second, third, order)
+
+
+def _shown(first: float, second: float, third: float, order: int) -> int:
+    """The order where three values, with steps in the ratio 1 : 2 : 4, show nearly as much or more, else the first."""
+    return order if abs(third - second) >= NEARLY * 2**order * abs(second - first) else 1
 
 
 def _shares(curve: Curve, fast: npt.NDArray[np.bool_]) -> tuple[float, float]:
