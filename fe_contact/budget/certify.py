@@ -82,7 +82,7 @@ MOST_APART = 1.5  # durations by different steps that tell of one and the same e
 ROUNDING = 1e-9  # of a solve of nearly incompressible bodies
 AS_EXPECTED = (0.8, 1.35)  # shares of the expected ratio of changes that show the order, 1.7 to 2.4 where it is two
 ABOUT = (0.6, 2.5)  # the same that show it about: extrapolation gains no order that could be relied on
-ASYMPTOTIC = 1e-2  # share of the duration by which the fewest steps may err where orders are to be believed
+ASYMPTOTIC = 1e-2  # of duration and first speed: so much the fewest steps may err where orders are to be believed
 NEARLY = 0.8  # share of the expected ratio that the durations must show: they stand for themselves alone
 ABOUT_A_STEP = (0.4, 9.0)  # step over relaxation time: outside, its weight in the step is within 1/8 of a power of it
 
@@ -348,12 +348,8 @@ def trust(curves: tuple[Curve, Curve, Curve], order: int, steps: tuple[float, fl
     else:
         summed = force if relaxation.is_elastic else min(force, order - dashpots - fast)
     force = min(force, order + 1 - dashpots - fast)
-    orders = {
-        "impulse": summed,
-        "restitution": min(summed, restitution),
-        "peak_depth": summed,
-        "duration": min(force, duration),
-    }
+    given = min(summed, restitution)  # the impulse is what the velocity changes by
+    orders = {"impulse": given, "restitution": given, "peak_depth": summed, "duration": min(force, duration)}
     return Trust({"force": force} | orders, fast if within_step else 0.0)
 
 

@@ -295,3 +295,20 @@ def test_a_body_too_soft_or_too_stiff_errs_by_no_more_than_is_said_of_it(
     forces, others = before.history.force_at(times), after.history.force_at(times)
     assert np.all(np.abs(others - forces) <= said.force(times))
     assert np.linalg.norm(others - forces) <= said.errors["history_l2"] * np.linalg.norm(forces)
+
+
+@pytest.mark.parametrize(("target", "velocity"), [("half_space", 0.02), ("layer", 0.02), ("layer", 0.023)])
+def test_a_ball_that_its_weight_hardly_lets_go_has_a_true_restitution(
+    target: str, velocity: float, uncovered: Callable[..., dict[str, float]]
+) -> None:
+    """Its last speed is the root of what little energy is left: 10 and 20 steps differ by half of it."""
+    striker = {"shape": "sphere", "radius": 6e-3, "mass": 0.05, "velocity": velocity}
+    material = {"law": "elastic", "E": 6e5, "nu": 0.45}
+    body = {"thickness": 0.02, "base": "bonded"} if target == "layer" else {}
+    held = {"shape": target, "material": material, **body}
+    table = {"name": "set-down", "striker": striker, "target": held, "model": {"gravity": 9.81}}
+    scene = lumped.Scene.from_dict(table)
+    found = fe_contact.run(scene, 2e-2)
+    assert found.converged
+    assert not uncovered(found, lumped.simulate(laws.ting.of(scene), scene, 1e-7))
+    assert (found.quantities["restitution"].error or 1.0) < 2e-2
