@@ -13,6 +13,7 @@ import pytest
 from fe_contact.cli import main
 from fe_contact.contact.problem import ContactProblem, PressedSurface
 from fe_contact.methods import simulate
+from fe_contact.reference import check
 from fe_contact.studies.compare.study import WITHIN
 from fe_contact.waves.line_reading import _ended_by
 from fe_contact.waves.targets import rod
@@ -255,4 +256,4 @@ def test_rods_that_elements_do_not_carry_are_refused(changes: dict[str, Any], ke
         if path in changes:
             changes = changes | {path: changes[path] | {"nu": 0.3, "density": 1e3}}
     with pytest.raises(BadInput, match=key):
-        rod.plan(Scene.load("rod", changes), {})
+        check(Scene.load("rod", changes), {})
