@@ -13,7 +13,7 @@ from fe_contact.budget import plan as statics
 from fe_contact.budget.budget import CAUSES, shares_of
 from fe_contact.budget.certify import Certified, certify
 from fe_contact.budget.plan import Plan
-from fe_contact.budget.refine import Finer, Growth, missing
+from fe_contact.budget.refine import Finer, dominant
 from fe_contact.budget.runs import operations
 from fe_contact.budget.solved import ImpactModel, SolvedBy, record, solved, tolerance_of
 from fe_contact.errors import faults_of
@@ -31,15 +31,6 @@ if TYPE_CHECKING:
     from fe_contact.waves.targets.base import WaveTarget
 
 ROUNDS = 4  # refinements before giving up
-# Where an edge crosses elements bars fall with the mesh to 1.5; extrapolated steps err by order two at least. What an
-# edge does by chance changes bars by a half: smaller steps than these may find nothing better, and a round of larger
-# ones may not be afforded.
-GROWTH = {
-    "mesh": Growth(order=1.5, step=1.5, most=1.5, work=2.0),
-    "penalty": Growth(order=1.0, step=2.0, most=4.0, work=0.1),
-    "time_step": Growth(order=2.0, step=2.0, most=2.0, work=0.7),
-    "far_field": Growth(order=2.0, step=2.0, most=2.0, work=0.3),
-}
 MOST_STEPS = 20_000  # of all marches of a round, about half a minute; the next one may take twice as many
 MOST_OPERATIONS = 3e12  # of a round, two minutes: contact problems reach 2e10 to 4e10 a second
 
@@ -171,8 +162,8 @@ class Statics:
         tolerance = found.numerics.tolerance
         if all(meets(part, tolerance) for part in found.parts):
             return Finer(None)
-        shares = {cause: np.concatenate([shares_of(one, cause) for one in found.row]) for cause in CAUSES}
-        settings = missing(shares, GROWTH, found.numerics, self.chosen.pinned)
+        excess = {cause: max(shares_of(one, cause).max() for one in found.row) for cause in CAUSES}
+        settings = dominant(excess, found.numerics, self.chosen.pinned, least=1.0)
         return Finer(settings, "" if settings is None else _too_dear(found, settings))
 
     def ledger(self, found: Certified) -> Sequence[LedgerEntry]:

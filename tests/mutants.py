@@ -168,7 +168,6 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/budget/refine.py", "DOMINANT", ""): WORK,
     ("fe_contact/budget/refine.py", "FACTOR", ""): WORK,
     ("fe_contact/reference.py", "MOST_STEPS", ""): WORK,
-    ("fe_contact/reference.py", "GROWTH", ""): WORK,
     ("fe_contact/budget/runs.py", "Runs._placed", "if number not in"): WORK,
     ("fe_contact/budget/certify.py", "MARCHES", ""): WORK,
     ("fe_contact/budget/certify.py", "certify", "MARCHES"): WORK,

@@ -1,8 +1,8 @@
 """Refinement, written once: solve, look at the bars, and again with finer settings until the bars meet the tolerance.
 
-How an impact is solved, and which settings may be finer, is a :class:`Way`. Two rules choose what to refine: no more
-than the bars say is missing, each cause's error predicted to fall with an order; or, where no order is known, all
-causes that stand out at once, by a fixed factor.
+How an impact is solved, and which settings may be finer, is a :class:`Way`. Two rules choose what to refine: where a
+march is cheap, all causes that stand out at once, by a fixed factor; where it is dear, no more than the bars say is
+missing, each cause's error predicted to fall with the order that its bar trusts.
 """
 
 from __future__ import annotations
@@ -118,8 +118,8 @@ class Growth(NamedTuple):
 
 def missing(
     shares: Mapping[str, Array], growths: Mapping[str, Growth], numerics: AnyNumerics, pinned: Iterable[str]
-) -> AnyNumerics | None:
-    """Settings whose bars are predicted to meet the tolerance; None where nothing helps, as all is ``pinned``.
+) -> AnyNumerics:
+    """Settings whose bars are predicted to meet the tolerance; the same where all is ``pinned``.
 
     ``shares`` (quantities,) of the tolerance that every cause takes of each, infinite where it is unknown.
     """
@@ -128,27 +128,20 @@ def missing(
     finer = numerics
     for cause, factor in factors(shares, growths, room).items():
         value = factor * getattr(numerics, SETTING[cause])
-        finer = finer.varied(**{SETTING[cause]: 4 * math.ceil(value / 4) if cause == "time_step" else value})
-    return None if finer == numerics else finer
+        finer = finer.varied(**{SETTING[cause]: int(value) if cause == "time_step" else value})
+    return finer
 
 
 def factors(shares: Mapping[str, Array], growths: Mapping[str, Growth], room: Mapping[str, float]) -> dict[str, float]:
     """By how much to raise the setting of every cause, up to its ``room``: one small step after the other, each time
     the one that takes most from the widest bar for its work.
-
-    What a round raises as far as it may is left to the next one: nothing else can stand in for it.
     """
     chosen = dict.fromkeys(shares, 1.0)
     while True:
-        held = [cause for cause in shares if chosen[cause] * growths[cause].step > room[cause]]
-        left = {
-            cause: share / chosen[cause] ** growths[cause].order
-            for cause, share in shares.items()
-            if cause not in held or chosen[cause] == 1.0
-        }
+        left = {cause: share / chosen[cause] ** growths[cause].order for cause, share in shares.items()}
         bars = np.sum(list(left.values()), axis=0)
-        free = [cause for cause, share in left.items() if cause not in held and share.any()]
-        if not free or bars.max() <= AIM:
+        free = [cause for cause in shares if chosen[cause] * growths[cause].step <= room[cause] and left[cause].any()]
+        if bars.max() <= AIM or not free:
             return chosen
         widest = int(bars.argmax())
         best = max(free, key=lambda cause: growths[cause].worth(float(left[cause][widest])))

@@ -70,7 +70,9 @@ def finer(shares: Mapping[str, Array], numerics: Numerics, pinned: Set[str]) -> 
 
     ``shares`` (n,) of the tolerance, by cause.
     """
-    return missing(shares, GROWTH, numerics, pinned)
+    found = missing(shares, GROWTH, numerics, pinned)
+    found = found.varied(steps=4 * math.ceil(found.steps / 4))
+    return None if found == numerics else found
 
 
 def check_given(given: Given, source: str, profile: Shape) -> None:

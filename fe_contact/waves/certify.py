@@ -272,7 +272,8 @@ class Waves:
         if all(meets(part, found.numerics.tolerance) for part in found.parts):
             return Finer(None)
         shares = {cause: np.concatenate([shares_of(one, cause) for one in found.row]) for cause in GROWTH}
-        return Finer(missing(shares, GROWTH, found.numerics, self.chosen.pinned))
+        finer = missing(shares, GROWTH, found.numerics, self.chosen.pinned)
+        return Finer(None if finer == found.numerics else finer)
 
     def ledger(self, found: Several) -> Sequence[LedgerEntry]:
         """What the model leaves out, as was planned."""

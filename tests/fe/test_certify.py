@@ -17,7 +17,7 @@ from fe_contact import reference
 from fe_contact.budget.budget import CAUSES, SETTING
 from fe_contact.budget.certify import Certified, certify
 from fe_contact.budget.plan import plan
-from fe_contact.budget.refine import Finer, dominant, missing, refine
+from fe_contact.budget.refine import Finer, dominant, refine
 from fe_contact.budget.variation import Softening
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import solve
@@ -214,26 +214,6 @@ def test_refinement_touches_the_setting_of_its_cause_only(cause: str, scene_of: 
     assert {key for key in before if before[key] != after[key]} == {SETTING[cause]}
     assert after[SETTING[cause]] > before[SETTING[cause]]
     assert dominant(errors, numerics, (SETTING[cause],)) is None
-
-
-@pytest.mark.parametrize("cause", CAUSES)
-def test_a_bar_just_too_wide_takes_one_step_of_one_setting(cause: str, scene_of: Scenes) -> None:
-    """A tenth above the tolerance; the second cause, which alone would be refined with it, leaves room enough."""
-    numerics: Numerics = plan(scene_of(MATERIALS["elastic"]), {}).numerics
-    other = next(one for one in CAUSES if one != cause)
-    shares = {one: np.array([1.1 * (one == cause), 0.5 * (one == other)]) for one in CAUSES}
-    finer = missing(shares, reference.GROWTH, numerics, ())
-    assert finer is not None
-    before, after = numerics.as_dict(), finer.as_dict()
-    assert {key for key in before if before[key] != after[key]} == {SETTING[cause]}
-    assert after[SETTING[cause]] == reference.GROWTH[cause].step * before[SETTING[cause]]
-
-
-def test_of_what_sums_up_to_too_much_the_cheapest_is_refined(scene_of: Scenes) -> None:
-    numerics: Numerics = plan(scene_of(MATERIALS["elastic"]), {}).numerics
-    shares = {"mesh": [0.38], "penalty": [0.11], "time_step": [0.54], "far_field": [0.0]}
-    finer = missing({cause: np.array(share) for cause, share in shares.items()}, reference.GROWTH, numerics, ())
-    assert finer == numerics.varied(steps=2 * numerics.steps)
 
 
 @dataclass
