@@ -22,7 +22,7 @@ from fe_contact.budget.variation import factor
 from fe_contact.errors import faults_of
 from fe_contact.plastic import indent as plastic
 from fe_contact.progress import Count, Counted, Progress, silent, uncounted
-from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics, check_kind
+from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics, check_kind, tolerance_of
 from fe_contact.solids import pressing as solids
 from fe_contact.targets.base import TARGETS
 from fe_contact.threads import one_thread
@@ -196,7 +196,7 @@ def settings(given: Given, shape: Shape, large: bool = False) -> Numerics:
 
     Of ``large`` strains, where every element is dear, no more elements than a loose tolerance asks for.
     """
-    tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
+    tolerance = tolerance_of(given)
     elements = ELEMENTS * max(1.0, (1e-4 / tolerance) ** 0.25)
     if large:
         elements = max(COARSEST, elements * min(1.0, (DEFAULT_TOLERANCE / tolerance) ** 0.5))

@@ -17,10 +17,10 @@ from fe_contact.assembly.forms import Array, check_compressible
 from fe_contact.budget import plan as statics
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import AIM
-from fe_contact.budget.solved import ImpactModel, tolerance_of
+from fe_contact.budget.solved import ImpactModel
 from fe_contact.indentation import COARSEST, indent, settings
 from fe_contact.progress import Progress, silent
-from fe_contact.settings import Given, check_kind
+from fe_contact.settings import Given, check_kind, tolerance_of
 from fe_contact.solids.pressing import CORRECTED, Solid, check_large
 from fe_contact.threads import one_thread
 from lumped.errors import NotReached

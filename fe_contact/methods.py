@@ -14,7 +14,7 @@ import numpy as np
 
 from fe_contact.errors import faults_of
 from fe_contact.progress import Count, Progress, silent
-from fe_contact.settings import DEFAULT_TOLERANCE, Given, checked
+from fe_contact.settings import Given, checked, tolerance_of
 from lumped import laws
 from lumped import simulate as simulate_law
 from lumped.errors import BadInput, Fault, FeContactError, nearest, shown
@@ -79,7 +79,7 @@ def _lumped(scene: Scene, name: str, given: Given, progress: Progress) -> Result
     if reason := refusal(name):
         raise BadInput(Fault("--method", "", reason))
     with counting_steps(Count.of(progress, f"time steps of {name}", 0.0)):
-        found = simulate_law(laws.get(name).of(scene), scene, tolerance=given.get("tolerance", DEFAULT_TOLERANCE))
+        found = simulate_law(laws.get(name).of(scene), scene, tolerance=tolerance_of(given))
     if scene.has_geometry:
         widest = float(np.nanmax(found.history.contact_radius, initial=0.0))
         scene.check_sunk(found.quantities["peak_depth"].value or 0.0, widest)
@@ -142,7 +142,7 @@ def weigh(scene: Scene, given: Given, progress: Progress = silent) -> Weighing:
     `given`: :func:`settings`. Exact laws are asked, the cheapest first, until one meets the tolerance; else it is
     finite elements. Raises BadInput, and NotReached where a scene's own law without geometry comes to no end.
     """
-    tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
+    tolerance = tolerance_of(given)
     exact, weighed, answer = exact_laws(scene), list[Weighed](), None
     for name in exact:
         if answer is not None:

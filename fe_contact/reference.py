@@ -15,11 +15,11 @@ from fe_contact.budget.certify import Certified, certify
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer, dominant
 from fe_contact.budget.runs import operations
-from fe_contact.budget.solved import ImpactModel, SolvedBy, record, solved, tolerance_of
+from fe_contact.budget.solved import ImpactModel, SolvedBy, record, solved
 from fe_contact.errors import faults_of
 from fe_contact.progress import Progress, silent
 from fe_contact.recovery import indentation_left, recovers
-from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics, WaveNumerics, check_kind
+from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics, WaveNumerics, check_kind, tolerance_of
 from fe_contact.steppers.steps import Strike
 from fe_contact.targets.base import TARGETS, recovers_in_flight, seconds_of_impact
 from lumped.errors import BadInput, Fault

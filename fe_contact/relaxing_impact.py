@@ -21,14 +21,14 @@ from fe_contact.budget.certify import LEAST_ORDER, other_mesh, other_setting
 from fe_contact.budget.curve import Curve, extrapolated
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer, dominant
-from fe_contact.budget.solved import ImpactModel, record, solved, tolerance_of
+from fe_contact.budget.solved import ImpactModel, record, solved
 from fe_contact.budget.variation import SAFETY, Variation, factor
 from fe_contact.errors import FINER_STEPS, MemoryTooSmall, TooManySteps
 from fe_contact.indentation import COARSEST
 from fe_contact.large_strains import check_impact
 from fe_contact.march.impact import STEPS_ALLOWED, balanced, share_of_rest, step_length, time_left
 from fe_contact.progress import Count, Counted, Progress, silent, uncounted
-from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics
+from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics, tolerance_of
 from fe_contact.solids.base import State
 from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.newton import Encounter, Equilibrium, EquilibriumLost

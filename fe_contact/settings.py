@@ -162,6 +162,11 @@ def _faults(name: str, value: object, source: str) -> list[Fault]:
     return []
 
 
+def tolerance_of(given: Given) -> float:
+    """What is asked of every ruled quantity, relative; without waves, which have defaults of their own."""
+    return float(given.get("tolerance", DEFAULT_TOLERANCE))
+
+
 def check_kind(given: Given, inertia: bool, source: str) -> None:
     """Raise BadInput for checked settings of the other kind of motion: with inertia or without."""
     state, found = f"with model.inertia = {str(inertia).lower()}", []

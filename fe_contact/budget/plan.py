@@ -19,7 +19,7 @@ import numpy as np
 
 from fe_contact.assembly.forms import check_compressible
 from fe_contact.bodies.pressing import Still
-from fe_contact.settings import DEFAULT_TOLERANCE, RANGES, Given, Numerics, check_kind
+from fe_contact.settings import DEFAULT_TOLERANCE, RANGES, Given, Numerics, check_kind, tolerance_of
 from fe_contact.steppers.flat_end import FlatEnd
 from fe_contact.targets.base import TARGETS
 from lumped.errors import BadInput
@@ -79,7 +79,7 @@ def plan(scene: Scene, given: Given) -> Plan:
     Raises NotReached where even a coarse estimate does not come to an end.
     """
     check_kind(given, False, scene.source)
-    tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
+    tolerance = tolerance_of(given)
     chosen = _settings(scene, tolerance)
     size = scales(scene, chosen)
     # gravity holds what does not separate, and swings it; a dashpot may answer most at the touch

@@ -15,7 +15,7 @@ from fe_contact.budget.refine import ImpactWay, refine
 from fe_contact.budget.several import Row, Several
 from fe_contact.march.impacts import UNFOLLOWED
 from fe_contact.progress import Progress
-from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics
+from fe_contact.settings import Given, Numerics
 from lumped.numbers import Clock
 from lumped.result.result import UNITS, IndentationLeft, Result, largest_bar, provenance, unmet
 from lumped.scene.scene import Scene
@@ -57,11 +57,6 @@ class ImpactModel:
     plan: Callable[[Scene, Given], Plan]
     expected: Callable[[Scene, Given], tuple[float, float]]
     fe: Callable[[Scene, Given, Progress], Result]
-
-
-def tolerance_of(given: Given) -> float:
-    """What is asked of every ruled quantity, relative."""
-    return float(given.get("tolerance", DEFAULT_TOLERANCE))
 
 
 def solved(

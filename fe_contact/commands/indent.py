@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from fe_contact.commands import base
-from fe_contact.settings import DEFAULT_TOLERANCE
+from fe_contact.settings import tolerance_of
 from lumped.errors import BadInput, Fault, NotReached, nearest, shown
 from lumped.indentation import Indentation
 from lumped.result.folder import publish
@@ -42,7 +42,7 @@ def _indented(args: argparse.Namespace, indenter: Indenter, depths: tuple[float,
         raise BadInput(Fault("--method", "", reason))
     from lumped.indentation import indent as closed_form
 
-    tolerance = given.get("tolerance", DEFAULT_TOLERANCE)
+    tolerance = tolerance_of(given)
     if args.method == "cheapest" and (indenter.model.finite or indenter.model.plasticity):
         return by_elements(indenter, depths, given, args.instant, progress)
     if args.method != "cheapest":

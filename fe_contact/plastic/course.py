@@ -21,7 +21,7 @@ from fe_contact.budget.variation import SAFETY
 from fe_contact.plastic.ground import Ground, Sizes, ground_of, yielding_of
 from fe_contact.plastic.path import ELASTIC_RATIO, Presser, Station
 from fe_contact.progress import Count, Counted, Progress, uncounted
-from fe_contact.settings import DEFAULT_TOLERANCE, RANGES, Given, Numerics
+from fe_contact.settings import DEFAULT_TOLERANCE, RANGES, Given, Numerics, tolerance_of
 from lumped.errors import BadInput, Fault
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
@@ -255,7 +255,7 @@ def _largest(holds: Callable[[float], bool], start: float, most: float = np.inf)
 
 def settings(given: Given, course: Course) -> Numerics:
     """Settings of a body that yields: what the user left open. The further it yields, the finer."""
-    tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
+    tolerance = tolerance_of(given)
     finer = (DEFAULT_TOLERANCE / tolerance) ** FOLLOWING * min(course.deepest / course.firm, FURTHEST) ** FURTHER
     elements, fewest = (RIM_ELEMENTS, RIM_ELEMENTS) if course.rim else (ELEMENTS, FEWEST_ELEMENTS)
     elements = min(max(elements * finer, fewest), MOST_ELEMENTS)

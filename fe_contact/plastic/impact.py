@@ -17,7 +17,7 @@ from fe_contact.budget.budget import CAUSES, Budget, TotalWork, shares_of
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer
-from fe_contact.budget.solved import ImpactModel, record, solved, tolerance_of
+from fe_contact.budget.solved import ImpactModel, record, solved
 from fe_contact.budget.variation import Variation
 from fe_contact.errors import MemoryTooSmall
 from fe_contact.march.impact import balanced
@@ -36,7 +36,7 @@ from fe_contact.plastic.course import (
 from fe_contact.plastic.indent import ROUNDS
 from fe_contact.plastic.path import Station, parting
 from fe_contact.progress import Progress, silent
-from fe_contact.settings import Given, Numerics, check_kind
+from fe_contact.settings import Given, Numerics, check_kind, tolerance_of
 from fe_contact.steppers.steps import March, Strike, Work
 from lumped.errors import BadInput, Fault
 from lumped.result.model_ledger import Peak, model_ledger

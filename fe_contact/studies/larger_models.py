@@ -14,7 +14,7 @@ from dataclasses import asdict, dataclass, field, replace
 from fe_contact.errors import faults_of
 from fe_contact.progress import Progress, silent
 from fe_contact.reference import check, expected, fe, plan
-from fe_contact.settings import DEFAULT_TOLERANCE, Given
+from fe_contact.settings import Given, tolerance_of
 from lumped.errors import FeContactError
 from lumped.materials.energies.base import DEFAULT
 from lumped.result.result import NO_KEY, LedgerEntry, Quantity, Result
@@ -84,7 +84,7 @@ def above(ledger: Sequence[LedgerEntry], tolerance: float) -> list[LedgerEntry]:
 
 def measure(scene: Scene, given: Given, progress: Progress = silent) -> tuple[MeasuredEffect, ...]:
     """Every effect above the tolerance that has a larger model, by one coarse run each. Raises BadInput, NotReached."""
-    tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
+    tolerance = tolerance_of(given)
     effects = above(plan(scene, given).ledger, tolerance)
     if not effects:
         return ()
@@ -126,7 +126,7 @@ def sufficient(scene: Scene, given: Given) -> SufficientModel:
     Each effect is judged by its own estimate, so that the set is that of all which exceed it; an effect taken in may
     change the others' estimates, and the ledger is asked again. Raises BadInput, NotReached.
     """
-    tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
+    tolerance = tolerance_of(given)
     taken, left = list[LedgerEntry](), dict[str, str]()
     while True:
         ledger = plan(scene, given).ledger
