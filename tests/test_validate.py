@@ -96,7 +96,8 @@ def make(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Make:
         asked = list[str]()
         monkeypatch.setattr(_chart, "plot_scenes", plot)
         monkeypatch.setattr(_study, "parts", lambda: two_parts(answers, asked))
-        return tmp_path / name, main(["validate", "--out", str(tmp_path / name), "--quiet", *options]), asked
+        here = ["--jobs", "1", "--quiet"]  # what is patched is patched in this process
+        return tmp_path / name, main(["validate", "--out", str(tmp_path / name), *here, *options]), asked
 
     return made
 

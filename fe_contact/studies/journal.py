@@ -16,7 +16,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, TypeVar, get_type_hints
 
-from fe_contact.progress import Progress
+from fe_contact.progress import Progress, silent
 from fe_contact.studies.workers import answers, workers
 from lumped.errors import CannotWrite
 from lumped.result.result import provenance
@@ -95,12 +95,16 @@ def _keep(file: Path, line: str) -> None:
         raise CannotWrite(file.parent, failure.strerror or str(failure)) from failure
 
 
-def measured(calls: Mapping[str, partial[R]], jobs: int) -> Generator[tuple[str, R], None, None]:
+def measured(
+    calls: Mapping[str, partial[R]], jobs: int, heard: Progress = silent
+) -> Generator[tuple[str, R], None, None]:
     """Names and results of calls as they come, from so many processes; from this one where one is enough.
+
+    What calls of other processes tell is ``heard``; see :func:`fe_contact.studies.workers.tell`.
 
     The processes are killed when the caller stops, fails or is interrupted: close the iterator then. They also end
     when this process is killed itself. Raises WorkerLost, and whatever a call raises.
     """
     processes = max(1, min(jobs, len(calls)))
-    with workers(processes) as (executor, ahead):
+    with workers(processes, heard=heard) as (executor, ahead):
         yield from answers(executor, calls.items(), ahead)

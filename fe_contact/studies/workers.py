@@ -22,6 +22,7 @@ from threading import Lock
 from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 from fe_contact.errors import WorkerLost, import_of
+from fe_contact.progress import Progress, silent
 from fe_contact.threads import one_thread
 from lumped.errors import BadInput, Fault, shown
 from lumped.schema.keys import Count
@@ -60,14 +61,15 @@ def checked_jobs(jobs: int | str) -> int:
 
 
 @contextmanager
-def workers(jobs: int, dask: str | None = None) -> Iterator[tuple[Executor, int]]:
+def workers(jobs: int, dask: str | None = None, heard: Progress = silent) -> Iterator[tuple[Executor, int]]:
     """Who answers, and how many they are: this process for one job, or so many processes, or the workers of ``dask``.
 
     That is the address of a scheduler of Dask, whose first worker is waited for, or LOCAL: so many on this machine.
-    Raises ExtraMissing, BadInput where no scheduler answers, WorkerLost where it gives a call up.
+    What a call in one of the processes says by :func:`tell` is ``heard``. Raises ExtraMissing, BadInput where no
+    scheduler answers, WorkerLost where it gives a call up.
     """
     if dask is None:
-        with Processes(jobs) if jobs > 1 else Here() as executor:
+        with Processes(jobs, heard) if jobs > 1 else Here() as executor:
             yield executor, jobs
         return
     with import_of("dask"):
@@ -99,19 +101,37 @@ class Here(Executor):
         return future
 
 
+def tell(message: str, done: float = 0, total: float = 0) -> None:
+    """Progress of a call, to the process that asked this one for it; see :class:`Progress`."""
+    if _asker is not None:
+        _asker.send(_Word(message, done, total))
+
+
+_asker: connection.Connection | None = None  # of this process, where it is one of several
+
+
 class _Worker(NamedTuple):
     process: BaseProcess
     line: connection.Connection
 
 
+class _Word(NamedTuple):
+    """What a call tells before it answers."""
+
+    message: str
+    done: float
+    total: float
+
+
 class Processes(Executor):
     """So many processes; one that dies is replaced, and its call asked again.
 
-    They are killed where the executor is shut down, and end when this process is killed itself. A call raises
-    WorkerLost where every process that was asked died.
+    They are killed where the executor is shut down, and end when this process is killed itself. What their calls tell
+    is ``heard``, from one of them at a time. A call raises WorkerLost where every process that was asked died.
     """
 
-    def __init__(self, jobs: int) -> None:
+    def __init__(self, jobs: int, heard: Progress = silent) -> None:
+        self._heard = heard
         self._asking, self._idle = ThreadPoolExecutor(jobs), SimpleQueue[_Worker | None]()
         self._known, self._lock, self._ended = set[BaseProcess](), Lock(), False
         for _ in range(jobs):
@@ -138,7 +158,10 @@ class Processes(Executor):
                 worker = worker or self._start()
                 try:
                     worker.line.send(call)
-                    failure, found = worker.line.recv()
+                    while isinstance(said := worker.line.recv(), _Word):
+                        with self._lock:
+                            self._heard(*said)
+                    failure, found = said
                 except (EOFError, ConnectionError):
                     self._known.discard(worker.process)
                     worker.process.join()
@@ -160,7 +183,7 @@ class Processes(Executor):
             if self._ended:
                 raise WorkerLost
             with signals_held():  # a process that is interrupted while it starts would print how far it came
-                process = context.Process(target=_serve, args=(its,), daemon=True)
+                process = context.Process(target=_serve, args=(its,), daemon=False)  # it may ask others
                 process.start()
             self._known.add(process)
         its.close()
@@ -186,6 +209,8 @@ def _serve(line: connection.Connection) -> None:
 
     A second thread measures, so that this one hears the line's end at once. An interrupt is the parent's to answer.
     """
+    global _asker
+    _asker = line
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if sys.platform != "win32":
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT, signal.SIGTERM})

@@ -121,7 +121,7 @@ SOFT = [name for name in ENFORCEMENTS.names if ENFORCEMENTS.get(name).soft]
 
 def bouncing_cases(quick: bool) -> list[Case]:
     """Quick: fewer elements, one penalty, two steps."""
-    steps, penalties, elements = ((1.0, 2.0), (1.0,), 20) if quick else ((0.5, 1.0, 2.0), (0.1, 1.0, 10.0), 60)
+    steps, penalties, elements = ((1.0, 2.0), (1.0,), 12) if quick else ((0.5, 1.0, 2.0), (0.1, 1.0, 10.0), 60)
     ways = [(name, penalty) for name in ENFORCEMENTS.names for penalty in (penalties if name in SOFT else (1.0,))]
     bodies = [*((name, 1.0) for name in MASSES.names), (DEFAULT["mass"], TIP)]
     every = product(WAVE_SCHEMES.names, bodies, ways, steps)

@@ -1,4 +1,4 @@
-"""The report: its sections made one after the other, each in a folder of its own, and the page of all of them.
+"""The report: its sections, two at a time, each in a folder of its own, and the page of all of them.
 
 A section's folder holds the files of its study, ``section.json``, what the page shows of them, and ``asked.json``, what
 it was asked of which suite. They appear all at once: a section that was interrupted is not there, and one that is there
@@ -10,7 +10,10 @@ from __future__ import annotations
 import json
 import os
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import closing
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from fe_contact import __version__
@@ -28,6 +31,7 @@ from fe_contact.studies.validate.base import (
     Section,
     parts,
 )
+from fe_contact.studies.workers import tell
 from lumped.errors import BadInput, CannotWrite, Fault, FeContactError, nearest
 from lumped.result.folder import checksum, publish
 from lumped.result.result import provenance
@@ -36,6 +40,7 @@ from lumped.schema.json_file import decoded, encoded, plain, write_json
 from meshes.errors import MeshError
 
 SCHEMA, SECTION_SCHEMA = "fe-contact/validate/1", "fe-contact/validate-section/1"
+LANES = 2  # look: sections at a time: while one draws its charts, or asks one process alone, another one goes on
 RECORD, SECTION, ASKED, PROVENANCE = "validate.json", "section.json", "asked.json", "provenance.json"
 
 
@@ -52,16 +57,13 @@ def validate(
     ``resume`` takes sections, and rows of others, that are there, of this suite; else all is made anew. Raises BadInput
     for an unknown name, CannotWrite; what else fails with a name is shown in the section's place.
     """
-    asked, told = chosen(only), list[Chapter]()
-    begun = time.monotonic()
-    for place, (name, part) in enumerate(asked.items(), 1):
-        where = folder / FOLDER / name
-        if not resume:
-            _forget(where)
-        kept = _kept(part, where, quick)
-        own = _within(f"{place} of {len(asked)}, {part.title}", progress)
-        told.append(Chapter(name, part, kept) if kept else _made(name, part, Request(where, quick, jobs, own)))
-    report = Report(folder, quick, tuple(told))
+    asked, begun = chosen(only), time.monotonic()
+    for name in () if resume else asked:
+        _forget(folder / FOLDER / name)
+    known = {name: _kept(part, folder / FOLDER / name, quick) for name, part in asked.items()}
+    told = {name: Chapter(name, asked[name], section) for name, section in known.items() if section}
+    told |= _all_made({name: part for name, part in asked.items() if name not in told}, folder, quick, jobs, progress)
+    report = Report(folder, quick, tuple(told[name] for name in asked))
     progress("page")
     publish(folder, lambda where: _write(report, where), RECORD)
     _write_provenance(folder, quick, jobs, time.monotonic() - begun)
@@ -79,6 +81,25 @@ def chosen(only: Sequence[str]) -> dict[str, ReportPart]:
     if faults:
         raise BadInput(faults)
     return {name: part for name, part in known.items() if not only or name in only}
+
+
+def _all_made(
+    asked: Mapping[str, ReportPart], folder: Path, quick: bool, jobs: int, progress: Progress
+) -> dict[str, Chapter]:
+    """Sections by their names, the longest begun first; each has its share of the processes."""
+    lanes = min(LANES, jobs, max(len(asked), 1))
+    heard = tell if lanes > 1 else progress
+    longest = sorted(asked.items(), key=lambda one: -one[1].seconds)
+    calls = {
+        name: partial(_made, name, part, Request(folder / FOLDER / name, quick, jobs // lanes, heard))
+        for name, part in longest
+    }
+    chapters = dict[str, Chapter]()
+    with closing(journal.measured(calls, lanes, progress)) as found:
+        for name, chapter in found:
+            chapters[name] = chapter
+            progress(f"{chapter.part.title}: {len(chapters)} of {len(calls)} sections stand")
+    return chapters
 
 
 def _within(title: str, progress: Progress) -> Progress:
@@ -119,7 +140,7 @@ def _kept(part: ReportPart, where: Path, quick: bool) -> Section | None:
 def _made(name: str, part: ReportPart, request: Request) -> Chapter:
     """A section made and written, or what kept it from being made."""
     try:
-        made = part.make(request)
+        made = part.make(replace(request, progress=_within(part.title, request.progress)))
         content = {"schema": SECTION_SCHEMA, "section": encoded(made.section)}
 
         def write(where: Path) -> None:
