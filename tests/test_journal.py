@@ -24,6 +24,7 @@ from fe_contact.errors import ContactNotSettled, WorkerLost
 from fe_contact.studies import journal
 from fe_contact.studies.journal import measured, rows
 from fe_contact.studies.sweep.study import Rows
+from fe_contact.studies.workers import tell
 from lumped.errors import BadInput, CannotWrite, Fault
 from lumped.paper.table1 import Elastic, contact_modulus
 from meshes.errors import GmshMissing
@@ -129,6 +130,15 @@ def test_what_a_failure_interrupts_keeps_its_rows(tmp_path: Path, calls_measured
 
 
 # processes
+
+
+def test_processes_ask_others_and_what_they_tell_is_heard(tmp_path: Path) -> None:
+    heard = list[str]()
+    asked = {name: moduli(*youngs) for name, youngs in {"soft": (1.0, 2.0), "stiff": (3.0, 4.0)}.items()}
+    calls = {name: partial(rows, tmp_path / name, some, tell, 2) for name, some in asked.items()}
+    found = dict(measured(calls, 2, lambda word, *_: heard.append(word)))
+    assert found == {name: {one: call() for one, call in some.items()} for name, some in asked.items()}
+    assert sorted(heard) == ["E = 1", "E = 2", "E = 3", "E = 4"]
 
 
 def test_processes_are_killed_when_nobody_asks_any_more() -> None:

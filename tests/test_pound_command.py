@@ -276,7 +276,7 @@ BAD: list[tuple[str, object, str]] = [
     ("law", None, "law: missing"),
     ("law.name", "kelvn", "did you mean kelvin"),
     ("law", {"name": "correspondence", "scene": "polymer-sphere"}, "law.scene: two storeys meet there: .* sinks in"),
-    ("law.scene", "no-scene", "law.scene: neither a file nor a packaged scene"),
+    ("law.scene", "no-scene", "law.scene: no such file, nor a packaged scene"),
     ("law", {"name": "ting"}, "law.name: ting follows from a shape"),
     ("law.k", None, "law.k: missing"),
     ("law.e", 1.5, "law.e"),

@@ -31,7 +31,7 @@ SEED, MUTANTS = 20260601, 3000
 OTHERS = (-1.0, 0.0, 1e40, -1e40, "a word", True, 7, [1.0], [], {"a": 1.0}, [True], "")  # in the place of a value
 # What is said of a key alone; a law's "missing; accepted: the damping: one of e or xi" is no key's.
 OF_A_KEY = re.compile(
-    "unknown key|is not accepted; accepted|is not available in this version|not a table|missing; a scene needs"
+    "unknown key|is not accepted; accepted|is not known; accepted|not a table|missing; a scene needs"
     "|missing; accepted: (?:a number|a whole|a list|one of)"
 )
 

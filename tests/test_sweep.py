@@ -87,7 +87,7 @@ correlation = [["striker.mass", "striker.mass", 2.0]]
     said = capfd.readouterr().err.splitlines()
     for key, cure in {
         "jbs": "methods",  # the nearest or all accepted keys
-        "scene": "'polymer-sphre': neither a file nor a packaged scene; did you mean polymer-sphere?",
+        "scene": "'polymer-sphre': no such file, nor a packaged scene; did you mean polymer-sphere?",
         "methods": "did you mean ting?",
         "tolerance": "0.1",
         "axes.striker.velocity.log": "0 excluded",

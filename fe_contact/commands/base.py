@@ -180,7 +180,8 @@ def folder(args: argparse.Namespace, command: str, name: str) -> Path:
 def check_writable(where: Path) -> None:
     """Raise BadInput for a folder in which nothing can be written."""
     if not writable(where):
-        raise BadInput(Fault("--out", str(where), "accepted: a folder that can be written, its name printable"))
+        found = "it is a file; " if where.is_file() else ""
+        raise BadInput(Fault("--out", str(where), f"{found}accepted: a folder that can be written, its name printable"))
 
 
 def writable(where: Path) -> bool:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
 from fe_contact.settings import KEYS, SCALES
 from lumped.errors import FeContactError, NotReached
-from lumped.result.result import good_to
+from lumped.result.result import LedgerEntry, good_to
 from lumped.scene.scene import Scene
 from lumped.schema import Table
 
@@ -50,7 +52,7 @@ def execute(args: argparse.Namespace) -> int:
     }
     if measured is not None:
         content["measured"] = [one.to_json() for one in measured]
-    lines += [*_lines(chosen, takes), *_measured_lines(measured)]
+    lines += [*_lines(chosen, takes), *([] if measured is None else _measured_lines(measured, chosen.ledger))]
     base.say(args, content, lines, title)
     if refused and not args.json:
         base.complain(str(refused))
@@ -78,11 +80,14 @@ def _measured(args: argparse.Namespace, scene: Scene, given: Table) -> tuple[Mea
     return measure(scene, given, base.progress_of(args))
 
 
-def _measured_lines(measured: tuple[MeasuredEffect, ...] | None) -> list[str]:
-    if measured is None:
-        return []
-    found = [f"  {one}" for one in measured] or ["  no effect above the tolerance has a larger model"]
-    return ["measured, as a change of the peak force:", *found]
+def _measured_lines(measured: Sequence[MeasuredEffect], ledger: Sequence[LedgerEntry]) -> list[str]:
+    """What was measured, and how good the model is by it; where the scene does not decide, the estimate counts."""
+    if not measured:
+        return ["measured, as a change of the peak force:", "  no effect above the tolerance has a larger model"]
+    most = {one.effect: abs(one.change) + one.error for one in measured if one.change is not None and one.error}
+    known = [replace(one, estimate=most.get(one.effect, one.estimate)) if one.spread is None else one for one in ledger]
+    found = ["measured, as a change of the peak force:", *(f"  {one}" for one in measured)]
+    return [*found, f"by what was measured, {good_to(known)}"]
 
 
 def _takes(scene: Scene, chosen: Plan, given: Table) -> tuple[Cost | None, FeContactError | None]:

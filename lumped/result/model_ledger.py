@@ -65,7 +65,7 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
     """The ledger of a scene under `model` (default: the scene's own), with the scales of its impact."""
     resolved = model or scene.model
     if not scene.has_geometry:
-        return (gravity(scene, resolved, peak.force, scene.mass),)
+        return (gravity(scene, resolved, peak, scene.mass),)
     dented = isinstance(scene.target, Rod) and scene.profile.fixed_radius is None
     if dented:
         peak = of_dent(scene, peak)
@@ -76,7 +76,7 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
         sideways(scene, peak),
         series(scene, peak),
         striker(scene),
-        gravity(scene, resolved, peak.force, scene.mass),
+        gravity(scene, resolved, peak, scene.mass),
         plasticity(scene, resolved, peak, IN_AN_IMPACT),
         adhesion(scene, peak),
     ]
@@ -138,20 +138,47 @@ def inertia(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
     return LedgerEntry(effect, "neglected", estimate, note, "model.inertia" if built else "", value=built or None)
 
 
-def gravity(scene: Scene, model: Model, force: float, mass: float) -> LedgerEntry:
-    """The weight of a mass, kg, which presses only where the motion leads down, over the peak force, N."""
-    effect, weight = "gravity", GRAVITY * mass / force if force > 0.0 else math.inf
+def gravity(scene: Scene, model: Model, peak: Peak, mass: float) -> LedgerEntry:
+    """What the weight of a mass, kg, adds to the peak force, where the motion leads down."""
+    effect = "gravity"
     if scene.target_mass is not None:
         return LedgerEntry(effect, "none between two free bodies", 0.0)
     if model.gravity != 0.0:
         return LedgerEntry(effect, "included", 0.0)
     if model.direction == "horizontal":
         return LedgerEntry(effect, "across the motion", 0.0)
+    more = _pressed_on(GRAVITY * mass / peak.force, _exponent(scene, peak)) if peak.force > 0.0 else math.inf
     if model.direction == "down":
-        return LedgerEntry(effect, "neglected", weight, "m g", "model.gravity", value=GRAVITY)
-    down = f"a drop (--set model.direction=down) leaves out {percent(weight)}"
+        note = "of a mass that meets a power of the depth"
+        return LedgerEntry(effect, "neglected", more, note, "model.gravity", value=GRAVITY)
+    down = f"a drop (--set model.direction=down) leaves out {percent(more)}"
     asked = f"{down}, a horizontal motion (--set model.direction=horizontal) nothing"
     return LedgerEntry(effect, "none assumed", None, asked)
+
+
+def _exponent(scene: Scene, peak: Peak) -> float:
+    """Of the force over the depth, at the peak; 1 where no load curve tells it: the least."""
+    if not scene.has_geometry or peak.depth <= 0.0:
+        return 1.0
+    try:
+        curve = scene.target.load_curve(scene.profile, scene.geometry.material.nu)
+        force, slope = map(float, curve.force_and_slope(peak.depth))
+    except FeContactError:  # no load curve, or one that ends before this depth
+        return 1.0
+    return max(peak.depth * slope / force, 1.0)
+
+
+def _pressed_on(weight: float, n: float) -> float:
+    """By how much more than 1 a force x^n grows, where a ``weight`` over the peak force without it does work, too.
+
+    Of the energies: x^(n + 1) = 1 + (n + 1) w x. By Newton's method from above, on a function that is convex.
+    """
+    if not math.isfinite(weight):
+        return math.inf
+    x = 1.0 + ((n + 1.0) * weight) ** (1.0 / n)
+    for _ in range(NEWTON):
+        x -= (x ** (n + 1.0) - 1.0 - (n + 1.0) * weight * x) / ((n + 1.0) * (x**n - weight))
+    return float(x**n - 1.0)
 
 
 def profile(shape: Shape, model: Model, peak: Peak) -> LedgerEntry:

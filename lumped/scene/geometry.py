@@ -100,7 +100,7 @@ def absurd_depth(shape: Shape, modulus: Relaxation, mass: float, velocity: float
         return ""
     return (
         f"the striker sinks in by {impact.depth:.3g} m, deeper than its radius: no small-displacement theory "
-        "holds; accepted: a lower velocity or mass, or a stiffer material"
+        "holds; accepted: a lower velocity or mass, or a stiffer material: are its moduli in Pa?"
     )
 
 

@@ -248,7 +248,8 @@ class Scene:
         wide = target.check_contact(contact_radius) or shape.check_contact(contact_radius)
         reason = target.check_depth(shape, depth) or wide
         if reason:
-            told = f"the striker sinks in by {depth:.3g} m: {reason}; cure: a lower velocity, a stiffer material"
+            cure = "a lower velocity, a stiffer material: are its moduli in Pa?"
+            told = f"the striker sinks in by {depth:.3g} m: {reason}; cure: {cure}"
             raise BadInput(Fault(self.source, "striker.velocity", told))
 
     def _ending(self) -> dict[str, float]:

@@ -81,7 +81,7 @@ class Packaged:
         """The file of a name; raises BadInput, with the nearest name, when there is none."""
         names = self.names
         if name not in names:
-            known = f"neither a file nor a packaged {self.kind}{nearest(name, names)}; packaged: {', '.join(names)}"
+            known = f"no such file, nor a packaged {self.kind}{nearest(name, names)}; packaged: {', '.join(names)}"
             raise BadInput(Fault(name, "", known))
         return data_folder() / self.folder / f"{name}.toml"
 

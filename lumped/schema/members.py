@@ -56,7 +56,7 @@ def available(package: str) -> tuple[str, ...]:
 
 def unavailable(names: tuple[str, ...], name: str) -> str:
     """What to say of a name which is none of `names`."""
-    return f"{shown(name)} is not available in this version; accepted: {', '.join(names)}{nearest(name, names)}"
+    return f"{shown(name)} is not known; accepted: {', '.join(names)}{nearest(name, names)}"
 
 
 @dataclass(frozen=True)

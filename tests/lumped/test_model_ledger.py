@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
+from scipy.integrate import quad, solve_ivp
 
 from lumped import LedgerEntry, Material, Model, Relaxation, Scene, Sphere, laws, simulate
 from lumped.errors import BadInput
@@ -142,17 +142,41 @@ def test_yielding_starts_at_its_threshold() -> None:
         assert estimate < 1.0
 
 
-def test_adhesion_gravity_and_strain_are_simple_ratios() -> None:
+def test_adhesion_and_strain_are_simple_ratios() -> None:
     scene = Scene.load("polymer-sphere", {"target.material.work_of_adhesion": 0.05})
     peak = Peak(force=2.0, depth=6e-5, contact_radius=6e-4, duration=0.02)
     found = {e.effect: e.estimate for e in model_ledger(scene, peak)}
     assert found["adhesion"] == pytest.approx(1.5 * math.pi * 0.05 * 0.006 / 2.0)
     assert found["striker compliance"] is None
+
+
+@pytest.mark.parametrize(("name", "n"), [("polymer-cone", 2.0), ("polymer-power", 1.25), ("polymer-prism", 1.0)])
+@pytest.mark.parametrize("weight", [0.05, 0.5, 5.0])
+def test_gravity_of_a_drop_adds_what_its_equation_of_motion_says(name: str, n: float, weight: float) -> None:
+    """Of a mass of one, x'' = g - x^n from x' = 1, g the ``weight`` over the peak force without it."""
+
+    def largest(pull: float) -> float:
+        fall = solve_ivp(
+            lambda _, y: [y[1], pull - max(y[0], 0.0) ** n],
+            (0.0, 40.0),
+            [0.0, 1.0],
+            events=turned,
+            rtol=1e-10,
+            atol=1e-12,
+        )
+        return float(fall.y_events[0][0][0]) ** n
+
+    def turned(_: float, y: list[float]) -> float:
+        return y[1]
+
+    turned.terminal = True  # type: ignore[attr-defined]  # as scipy reads it
+    scene, force = Scene.load(name), largest(0.0)
+    peak = Peak(9.81 * scene.mass / weight, 1e-5, 1e-3, 0.02)
     weights = [
         {e.effect: e.estimate for e in model_ledger(scene, peak, model)}["gravity"]
         for model in (Model(gravity=9.81), Model(direction="horizontal"), Model(direction="down"), Model())
     ]
-    assert weights == [0.0, 0.0, pytest.approx(9.81 * 0.05 / 2.0), None]
+    assert weights == [0.0, 0.0, pytest.approx(largest(weight * force) / force - 1.0, rel=1e-6), None]
 
 
 def test_gravity_along_a_horizontal_motion_is_refused() -> None:

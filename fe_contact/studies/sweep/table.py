@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -137,8 +138,14 @@ class SweepTable:
             converged, refused = self.converged[:, place], self.refused[:, place]
             counts = f"{converged.sum()} converged, {refused.sum()} refused"
             missed = (~converged & ~refused).sum()
-            said.append(f"{method}: {counts}, {missed} not converged{self._widest(place)}")
+            said.append(f"{method}: {counts}, {missed} not converged{self._widest(place)}{self._refusal(place)}")
         return said
+
+    def _refusal(self, method: int) -> str:
+        """Why cases were refused, as most of them were; nothing where none was."""
+        cases = np.flatnonzero(self.refused[:, method]).tolist()
+        reasons = Counter(self.reasons.get((case, method), "no reason given") for case in cases).most_common(1)
+        return f"; refused: {reasons[0][0]}" if reasons else ""
 
     def _widest(self, method: int) -> str:
         """The case whose answer converged with the widest bar; nothing where none has a bar."""

@@ -86,19 +86,20 @@ def chosen(only: Sequence[str]) -> dict[str, ReportPart]:
 def _all_made(
     asked: Mapping[str, ReportPart], folder: Path, quick: bool, jobs: int, progress: Progress
 ) -> dict[str, Chapter]:
-    """Sections by their names, the longest begun first; each has its share of the processes."""
-    lanes = min(LANES, jobs, max(len(asked), 1))
-    heard = tell if lanes > 1 else progress
-    longest = sorted(asked.items(), key=lambda one: -one[1].seconds)
-    calls = {
-        name: partial(_made, name, part, Request(folder / FOLDER / name, quick, jobs // lanes, heard))
-        for name, part in longest
-    }
-    chapters = dict[str, Chapter]()
-    with closing(journal.measured(calls, lanes, progress)) as found:
-        for name, chapter in found:
-            chapters[name] = chapter
-            progress(f"{chapter.part.title}: {len(chapters)} of {len(calls)} sections stand")
+    """Sections by their names, the longest first: with all processes where it takes longer than all others together,
+    the others with their share of them.
+    """
+    longest, chapters = sorted(asked, key=lambda name: -asked[name].seconds), dict[str, Chapter]()
+    alone = [name for name in longest[:1] if 2 * asked[name].seconds > sum(part.seconds for part in asked.values())]
+    for names, most in ((alone, 1), (longest[len(alone) :], LANES)):
+        lanes = max(min(most, jobs, len(names)), 1)
+        heard = tell if lanes > 1 else progress
+        requests = {name: Request(folder / FOLDER / name, quick, jobs // lanes, heard) for name in names}
+        calls = {name: partial(_made, name, asked[name], request) for name, request in requests.items()}
+        with closing(journal.measured(calls, lanes, progress)) as found:
+            for name, chapter in found:
+                chapters[name] = chapter
+                progress(f"{chapter.part.title}: {len(chapters)} of {len(asked)} sections stand")
     return chapters
 
 

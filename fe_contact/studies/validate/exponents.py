@@ -97,6 +97,6 @@ MEMBER = ReportPart(
     question="Where does the exponent of force over depth lie, and what do impacts tell of it?",
     command="fe-contact exponents",
     make=make,
-    seconds=15,
+    seconds=86,
     quick="places and Poisson's ratios, and most impacts",
 )

@@ -102,5 +102,5 @@ MEMBER = ReportPart(
     question="What of the source paper's printed numbers is found again, and where does it differ?",
     command="fe-contact paper",
     make=make,
-    seconds=9,
+    seconds=12,
 )

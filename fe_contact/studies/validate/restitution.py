@@ -79,5 +79,5 @@ MEMBER = ReportPart(
     question="Does a law bounce as hard as it was asked to?",
     command="fe-contact restitution",
     make=make,
-    seconds=8,
+    seconds=14,
 )

@@ -90,5 +90,5 @@ MEMBER = ReportPart(
     question="Does a rod in a ring push back as the paper's formulas say?",
     command="fe-contact ring",
     make=make,
-    seconds=30,
+    seconds=20,
 )

@@ -73,6 +73,6 @@ MEMBER = ReportPart(
     question="Where do methods break, and do the defaults hold there?",
     command="fe-contact stability",
     make=make,
-    seconds=96,
+    seconds=1000,
     quick="elements, steps and penalties",
 )

@@ -79,5 +79,5 @@ MEMBER = ReportPart(
     question="Do the paper's geometry factors, exponents and moduli hold, row by row?",
     command="fe-contact table1",
     make=make,
-    seconds=30,
+    seconds=31,
 )

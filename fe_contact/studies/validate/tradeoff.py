@@ -70,6 +70,6 @@ MEMBER = ReportPart(
     question="How much work does an error bar take, and are the defaults near the front?",
     command="fe-contact validate --sections tradeoff",
     make=make,
-    seconds=14,
+    seconds=54,
     quick="most settings",
 )

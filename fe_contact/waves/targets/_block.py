@@ -25,7 +25,7 @@ from fe_contact.waves.line_reading import Ending, read_bar
 from fe_contact.waves.plan import Cost
 from fe_contact.waves.targets.base import WaveTarget
 from lumped.errors import BadInput, Fault
-from lumped.result.model_ledger import gravity
+from lumped.result.model_ledger import Peak, gravity
 from lumped.result.result import LedgerEntry
 from lumped.scene.scene import Scene
 from lumped.schema import Table
@@ -156,7 +156,7 @@ def _ledger(scene: Scene, bar: Bar) -> tuple[LedgerEntry, ...]:
         LedgerEntry("inertia of the striker", "included", 0.0),
         LedgerEntry("lateral inertia", "neglected", sideways, "(nu radius/length)^2, Rayleigh; but at wave fronts"),
         LedgerEntry("finite strain", "small displacements", None, "v/c of either sign", spread=(-strain, strain)),
-        gravity(scene, scene.model, force, bar.density * bar.area * bar.length + bar.end_mass),
+        gravity(scene, scene.model, Peak(force, 0.0, 0.0, 0.0), bar.density * bar.area * bar.length + bar.end_mass),
     )
 
 
