@@ -31,13 +31,14 @@ SLOW = 1e-3  # step over relaxation time below which the lag is a twelfth of tha
 
 class PartLaw(NamedTuple):
     """Numbers of one part in a step of one length: ``now`` modulus of an increment; z' = decay z + gain (u' - u);
-    ``late`` what z' - z counts for to make up for the lag, Pa.
+    ``late`` what z' - z counts for to make up for the lag, Pa; ``mean`` modulus of an increment, and of z, over it.
     """
 
     now: float
     decay: Array
     gain: Array
     late: Array
+    mean: tuple[float, Array]
 
     def moved(self, branches: Array, change: Array) -> Array:
         """The branches (k, N) after an increment (N,)."""
@@ -65,7 +66,10 @@ class Part:
         gain = -lost / ratios
         now = self.relaxation.equilibrium + float(np.dot(self.relaxation.moduli, gain))
         lag = np.where(ratios < SLOW, ratios / 12.0, -1.0 / lost - 0.5 - 1.0 / ratios)
-        return PartLaw(now, 1.0 + lost, gain, np.asarray(self.relaxation.moduli) * lag)
+        moduli = np.asarray(self.relaxation.moduli)
+        of_change, of_past = galerkin.weights(moduli, ratios)
+        mean = 0.5 * self.relaxation.equilibrium + float(of_change.sum())
+        return PartLaw(now, 1.0 + lost, gain, moduli * lag, (mean, of_past))
 
     def past(self, law: PartLaw, displacement: Array, branches: Array) -> Array:
         """Displacement times modulus, (N,), at the end of a step in which nothing moves; ``branches`` (k, N)."""
@@ -76,12 +80,10 @@ class Part:
         """Displacement times modulus at an instant, (N,)."""
         return np.asarray(self.relaxation.equilibrium * displacement + np.asarray(self.relaxation.moduli) @ branches)
 
-    def averaged(self, step: float, displacement: Array, change: Array, branches: Array) -> Array:
+    def averaged(self, law: PartLaw, displacement: Array, change: Array, branches: Array) -> Array:
         """Displacement times modulus, average over a step in which the displacement (N,) grows by ``change``, (N,)."""
-        relaxation = self.relaxation
-        of_change, of_past = galerkin.weights(np.asarray(relaxation.moduli), step / np.asarray(relaxation.times))
-        held = relaxation.equilibrium * (displacement + change / 2)
-        return np.asarray(held + of_change.sum() * change + of_past @ branches)
+        of_change, of_past = law.mean
+        return np.asarray(self.relaxation.equilibrium * displacement + of_change * change + of_past @ branches)
 
     def stored(self, displacement: Array, branches: Array, pulls: Array) -> float:
         """Elastic energy of springs and branches, J; ``pulls`` (1 + k, N) are the stiffness times either."""

@@ -203,7 +203,7 @@ def onwards(
             state, found = stepper.advance(before)
             if not np.abs(state.velocity).max() <= fastest:  # nan is no less
                 raise MotionUnbounded(state.time)
-            energies = account_after(energies, body, scheme, before, state)
+            energies = account_after(energies, stepper, before, state)
             impulse += _impulse(body, before, state)
             iterations += found.iterations
         samples.append(_sample(body, state, impulse, watch, energies, iterations))
@@ -297,17 +297,18 @@ def account_at_start(body: BodyWithMass, state: BodyState) -> Energies:
 
 
 def account_after(
-    account: Energies, body: BodyWithMass, scheme: Scheme, before: BodyState, after: BodyState
+    account: Energies, stepper: ExplicitStepper | ImplicitStepper, before: BodyState, after: BodyState
 ) -> Energies:
     """The account one step later."""
-    step, change = after.time - before.time, after.displacement - before.displacement
+    body, scheme, step = stepper.body, stepper.scheme, stepper.step
+    change = after.displacement - before.displacement
     standing, pulled = _standing(body, after), [late[0] - early[0] for early, late in _pulls(before, after)]
     heats = [
         part.heat(step, change, pull, own, pulls[1:])
         for part, pull, own, pulls in zip(body.parts, pulled, before.branches, before.pulls, strict=True)
     ]
     pressed = _contact_work(body, scheme, before, after, change) - (standing[-1] - account.contact)
-    numerical = _of_inertia(scheme, before, after, step) + _of_stress(body, scheme, before, after, step, change)
+    numerical = _of_inertia(scheme, before, after, step) + _of_stress(stepper, before, after, change)
     return Energies(
         account.work + float(body.weight @ change),
         *standing,
@@ -353,21 +354,19 @@ def _of_inertia(scheme: Scheme, before: BodyState, after: BodyState, step: float
     return first + step**2 * (beta - gamma / 2) * float(pushed @ (mean + (0.5 - alpha_m) * change))
 
 
-def _of_stress(
-    body: BodyWithMass, scheme: Scheme, before: BodyState, after: BodyState, step: float, change: Array
-) -> float:
+def _of_stress(stepper: ExplicitStepper | ImplicitStepper, before: BodyState, after: BodyState, change: Array) -> float:
     """Loss by stress and damping that are not averages over the step."""
-    late, early = 1 - scheme.alpha_f, scheme.alpha_f
+    scheme, late, early = stepper.scheme, 1 - stepper.scheme.alpha_f, stepper.scheme.alpha_f
     lost = 0.0
-    for part, (start, end) in zip(body.parts, _pulls(before, after), strict=True):
+    for part, law, (start, end) in zip(stepper.body.parts, stepper.laws, _pulls(before, after), strict=True):
         start, end = start @ change, end @ change  # all of it is linear in them
         held = late * part.stressed(end[0], end[1:]) + early * part.stressed(start[0], start[1:])
-        lost += float(held - part.averaged(step, start[0], end[0] - start[0], start[1:]))
+        lost += float(held - part.averaged(law, start[0], end[0] - start[0], start[1:]))
         if not scheme.explicit:
-            lost += float(part.law(step).late @ (end[1:] - start[1:]))
-    if body.damping is not None:
+            lost += float(law.late @ (end[1:] - start[1:]))
+    if stepper.body.damping is not None:
         begun, ended = before.damped[:2] @ change, after.damped[:2] @ change
-        lost += float(late * ended[1] + early * begun[1] - (ended[0] - begun[0]) / step)
+        lost += float(late * ended[1] + early * begun[1] - (ended[0] - begun[0]) / stepper.step)
     return lost
 
 

@@ -96,7 +96,9 @@ class ImplicitStepper:
         self.body, self.scheme, self.enforced, self.step = body, scheme, enforced, step
         self.laws = [part.law(step) for part in body.parts]
         self._onwards, self._of_change = _newmark(scheme, step)
-        self.solve = factorized(self._effective())
+        effective = self._effective()
+        self.solve = factorized(effective)
+        self._bodies = _apart(effective, body.pressing.push.tocsr())
 
     def begun(self, state: BodyState) -> BodyState:
         """The first state: the pressure of a first step belongs to its end."""
@@ -110,15 +112,25 @@ class ImplicitStepper:
         return sparse.vstack([*(part.stiffness for part in body.parts), body.inertia, damping]).tocsr()
 
     @cached_property
-    def moved(self) -> Array:
-        """Increments (N, m) of unit surface forces."""
-        return np.asarray((1 - self.scheme.alpha_f) * self.solve(self.body.pressing.push.toarray()))
+    def moved(self) -> tuple[Moved, ...]:
+        """Increments by surface forces; one solution serves all bodies that do not feel each other."""
+        push, counts = self.body.pressing.push, [nodes.stop - nodes.start for _, nodes in self._bodies]
+        forces = np.zeros((self.body.size, max(counts)))
+        for (own, nodes), count in zip(self._bodies, counts, strict=True):
+            forces[own, :count] = push[own, nodes].toarray()
+        found = (1 - self.scheme.alpha_f) * self.solve(forces)
+        return tuple(
+            Moved(own, nodes, found[own, :count]) for (own, nodes), count in zip(self._bodies, counts, strict=True)
+        )
 
     @cached_property
     def surface(self) -> PressedSurface:
         """What contact knows of the body in a step."""
         pressing = self.body.pressing
-        return surface_of(pressing.push.T @ self.moved, pressing)
+        compliance = np.zeros((pressing.push.shape[1],) * 2)
+        for own, nodes, increments in self.moved:
+            compliance[nodes, nodes] += pressing.push[own, nodes].T @ increments
+        return surface_of(compliance, pressing)
 
     def advance(self, state: BodyState) -> tuple[BodyState, Found]:
         """The state a step later; raises ContactNotSettled."""
@@ -126,7 +138,9 @@ class ImplicitStepper:
         change = self._free(state)
         overlap = pressing.overlap(state.displacement + change)
         found = self.enforced.found(self.surface, overlap, state.signed_pressure > 0.0, state.time)
-        change += self.moved @ pressing.forces(found.pressure)
+        forces = pressing.forces(found.pressure)
+        for moved in self.moved:
+            change[moved.own] += moved.by(forces)
         return self._moved(state, change, found), found
 
     def flown(self, state: BodyState) -> BodyState:
@@ -170,6 +184,32 @@ class ImplicitStepper:
             pulls=tuple(law.pulled(own, pull) for law, own, pull in zip(self.laws, state.pulls, pulled, strict=True)),
             signed_pressure=found.signed_pressure,
         )
+
+
+class Moved(NamedTuple):
+    """Increments (n, m) of the degrees of freedom of one body, ``own``, by unit forces on the surface ``nodes``."""
+
+    own: slice
+    nodes: slice
+    increments: Array
+
+    def by(self, forces: Array) -> Array:
+        """Increment (n,) by forces on all nodes; beyond the contact they are none."""
+        pressed = forces[self.nodes]
+        count = np.flatnonzero(pressed).max(initial=-1) + 1
+        return np.asarray(self.increments[:, :count] @ pressed[:count])
+
+
+def _apart(matrix: Matrix, push: Matrix) -> list[tuple[slice, slice]]:
+    """Of every body that feels no other its degrees of freedom, and the surface nodes that push it."""
+    farthest = np.maximum.accumulate(np.maximum.reduceat(matrix.indices, matrix.indptr[:-1]))
+    ends = np.flatnonzero(farthest == np.arange(farthest.size)) + 1
+    found = []
+    for start, end in zip([0, *ends], ends, strict=False):
+        nodes = np.unique(push[start:end].nonzero()[1])
+        if nodes.size:
+            found.append((slice(start, end), slice(nodes[0], nodes[-1] + 1)))
+    return found
 
 
 def _newmark(scheme: Scheme, dt: float) -> tuple[Array, Array]:

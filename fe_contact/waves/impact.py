@@ -244,9 +244,10 @@ class Flights:
         """The touch that follows a separation; None where ``until``, s, comes before. Raises TooManySteps."""
         moment, level, highest, taken = parted, 0, np.inf, 0
         while moment.state.time < until:
-            state = self._flown(moment, self._steppers.of(DAMPED, 2.0**level * self._step))
+            stepper = self._steppers.of(DAMPED, 2.0**level * self._step)
+            state = self._flown(moment, stepper)
             if not _met(state):
-                moment, taken = self._entered(moment, state), taken + 1
+                moment, taken = _entered(moment, stepper, state), taken + 1
                 if taken >= self._patience and level < highest:
                     level, taken = level + 1, 0
             elif level:
@@ -263,9 +264,10 @@ class Flights:
         left = touched(state.time, step, overlap, closing) - state.time
         if left <= LOCATED * step:
             return moment
-        touch = self._flown(moment, self._steppers.new(DAMPED, left))
+        stepper = self._steppers.new(DAMPED, left)
+        touch = self._flown(moment, stepper)
         open_yet = np.minimum(touch.signed_pressure, 0.0)
-        return self._entered(moment, touch._replace(signed_pressure=open_yet))
+        return _entered(moment, stepper, touch._replace(signed_pressure=open_yet))
 
     def _flown(self, moment: Moment, stepper: ExplicitStepper | ImplicitStepper) -> BodyState:
         """A step later, whether or not anything meets in it. Raises TooManySteps."""
@@ -276,9 +278,10 @@ class Flights:
         self._counted(1.0)
         return stepper.flown(moment.state)
 
-    def _entered(self, moment: Moment, state: BodyState) -> Moment:
-        """A step further in the account of energy too."""
-        return Moment(state, account_after(moment.energies, self._body, DAMPED, moment.state, state))
+
+def _entered(moment: Moment, stepper: ExplicitStepper | ImplicitStepper, state: BodyState) -> Moment:
+    """A step further in the account of energy too."""
+    return Moment(state, account_after(moment.energies, stepper, moment.state, state))
 
 
 def _met(state: BodyState) -> bool:
