@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fe_contact import reference
 from fe_contact.budget import several
 from fe_contact.budget.budget import CAUSES
 from fe_contact.budget.refine import Growth
@@ -64,6 +65,21 @@ def test_where_all_settings_are_kept_nothing_is_refined(
 ) -> None:
     pinned = ("elements_per_contact", "penalty", "steps", "far_radius")
     assert waves(numerics, pinned).finer(judged(numerics, 0.4, monkeypatch)).settings is None
+
+
+def test_the_contact_whose_bars_miss_most_says_what_is_refined(
+    numerics: WaveNumerics, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of several in a row, whichever that is."""
+    shares = {"calm": dict.fromkeys(CAUSES, 0.01), "wild": dict.fromkeys(CAUSES, 3.0)}
+    monkeypatch.setattr(reference, "meets", lambda part, tolerance: False)
+    monkeypatch.setattr(reference, "shares_of", lambda one, cause: np.array([0.0, shares[one][cause]]))
+    monkeypatch.setattr(reference, "_too_dear", lambda found, finer: "")
+    monkeypatch.setattr(reference, "dominant", lambda excess, *_, least: excess)
+    chosen: Any = SimpleNamespace(pinned=())
+    for row in (["calm", "wild"], ["wild", "calm"]):
+        found: Any = SimpleNamespace(numerics=numerics, row=row, parts=row)
+        assert reference.Statics(chosen, chosen, chosen).finer(found).settings == shares["wild"]
 
 
 def test_rows_of_a_curve_with_waves_follow_the_tolerance(numerics: WaveNumerics) -> None:

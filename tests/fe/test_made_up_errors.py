@@ -372,6 +372,18 @@ def test_a_body_softer_by_a_share_errs_by_that_share_of_all_work_that_its_force_
     assert Softening(worked, 0.1).energies["stored"] == pytest.approx(0.5)
 
 
+@pytest.mark.parametrize("worth", [1.0, 3.0])
+def test_a_speed_that_errs_before_the_end_makes_the_bar_of_what_the_striker_takes_along(worth: float) -> None:
+    """By the factor of the change, to first order m v dv; the account itself tells nothing of it."""
+    slow = 1e-4
+    late = replace(TRUTH, mean_force=TRUTH.mean_force * (1.0 + slow * np.sin(np.pi * TRUTH.x**2)))
+    change = Variation(TRUTH, late, worth)
+    speed = change.errors["restitution"] * STRIKE.velocity
+    assert speed == pytest.approx(worth * Variation(TRUTH, late, 1.0).velocity)
+    expected = STRIKE.mass * speed * abs(TRUTH.leaving_speed)
+    assert change.energies["out"] == pytest.approx(expected, rel=1e-3)
+
+
 def test_the_steps_that_count_are_seconds_however_long_the_contact(settings: Numerics) -> None:
     """A branch as fast as a step is as fast as a step when both last a thousand times as long."""
     errors = []
