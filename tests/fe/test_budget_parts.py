@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -11,10 +12,11 @@ import numpy as np
 import pytest
 
 from fe_contact import reference
-from fe_contact.budget import several
+from fe_contact.budget import several, solved
 from fe_contact.budget.budget import CAUSES
+from fe_contact.budget.certify import _judging
 from fe_contact.budget.refine import Growth
-from fe_contact.budget.runs import AnyRuns
+from fe_contact.budget.runs import AnyRuns, Runs
 from fe_contact.budget.several import Row
 from fe_contact.march.impacts import Followed
 from fe_contact.settings import WaveNumerics
@@ -22,7 +24,7 @@ from fe_contact.waves import certify
 from fe_contact.waves.certify import Waves
 from fe_contact.waves.plan import DEFAULTS
 from lumped.errors import NotReached
-from lumped.result.result import Quantity
+from lumped.result.result import UNITS, Quantity
 
 SETTINGS: dict[str, Any] = {"tolerance": 3e-3, "steps": 200, "contact_radius": 1e-3, "contact_time": 1e-3}
 
@@ -82,6 +84,42 @@ def test_the_contact_whose_bars_miss_most_says_what_is_refined(
         assert reference.Statics(chosen, chosen, chosen).finer(found).settings == shares["wild"]
 
 
+def test_a_round_is_refused_by_the_work_it_takes(numerics: WaveNumerics, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three times the steps on a mesh twice as fine: three times as many, and 24 times the operations."""
+    finer = replace(numerics, steps=3 * numerics.steps, elements_per_contact=2.0 * numerics.elements_per_contact)
+    found: Any = SimpleNamespace(numerics=numerics, work=SimpleNamespace(steps=1000), surface=None)
+    monkeypatch.setattr(reference, "operations", lambda work, surface: 1e9)
+    for bound, taken, told in (
+        ("MOST_STEPS", 3000, "about 3000 steps"),
+        ("MOST_OPERATIONS", 2.4e10, r"about 2.4e\+10"),
+    ):
+        monkeypatch.setattr(reference, bound, 1.01 * taken)
+        assert reference._too_dear(found, finer) == ""
+        monkeypatch.setattr(reference, bound, 0.99 * taken)
+        assert re.search(told, reference._too_dear(found, finer))
+        monkeypatch.setattr(reference, bound, 1e99)
+
+
+def test_what_one_contact_misses_is_said_without_its_number() -> None:
+    quantity = {name: Quantity(1.0, 1e-2 if name == "duration" else 1e-4, "") for name in UNITS}
+    found: Any = SimpleNamespace(numerics=SimpleNamespace(tolerance=1e-3), parts=(quantity,))
+    for impacts, said in ((1, "tolerance"), (2, "contact 1: tolerance")):
+        scene: Any = SimpleNamespace(motion=SimpleNamespace(impacts=impacts))
+        first, *_ = solved._missed(scene, SimpleNamespace(refused=""), found)  # type: ignore[arg-type]
+        assert first == f"{said} 0.001 not reached: duration to 0.01"
+
+
+@pytest.mark.parametrize("few", [True, False])
+def test_a_mesh_is_varied_with_no_fewer_steps_where_few_would_hide_what_it_changes(
+    few: bool, numerics: WaveNumerics
+) -> None:
+    """One that stays in its place, or is coarse."""
+    cheap, settings = (numerics.varied(steps=steps) for steps in ((400, 160) if few else (160, 400)))
+    assert _judging(settings, cheap, "mesh", True).steps == 400
+    assert _judging(settings.varied(elements_per_contact=1.0), cheap, "mesh").steps == 400
+    assert _judging(settings.varied(elements_per_contact=40.0), cheap, "mesh") == cheap
+
+
 def test_rows_of_a_curve_with_waves_follow_the_tolerance(numerics: WaveNumerics) -> None:
     """A polynomial of degree five between them: twice as many err by 2^-5. Fewer steps leave no fewer rows."""
     many = replace(numerics, steps=20_000)
@@ -115,6 +153,8 @@ def test_a_run_that_fails_tells_nothing_of_any_contact_and_is_not_run_again(nume
     assert runs.curve(0, numerics) is None
     assert runs.curve(1, numerics) is None
     assert runs.tried == 1
+    alike: Any = runs
+    assert Runs.curve_at_corners(alike, 0, numerics) is None  # type: ignore[arg-type]
 
 
 def test_a_touch_is_as_uncertain_as_contact_and_flight_before_it(monkeypatch: pytest.MonkeyPatch) -> None:

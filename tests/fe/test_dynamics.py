@@ -385,3 +385,13 @@ def test_a_constraint_on_a_surface_with_mass_acts_from_the_first_instant() -> No
     choices = Choices(WAVE_SCHEMES.get("central_difference").of(1.0), Enforced(exact, 1.0), 0.02)
     motion = march(body, -np.ones(51), choices, 1.98, np.eye(51))
     np.testing.assert_allclose(motion.force, 1.0, atol=1e-9)
+
+
+def test_what_makes_up_for_the_lag_of_a_step_is_exact_but_for_rounding() -> None:
+    """(1/(1 - exp(-x)) - 1/2 - 1/x) per modulus, x the step over the relaxation time; by a longer mantissa."""
+    ratios = np.geomspace(1e-5, 10.0, 61)
+    long = ratios.astype(np.longdouble)
+    exact = -1.0 / np.expm1(-long) - 0.5 - 1.0 / long
+    part = Part(sparse.csc_matrix(np.eye(1)), Relaxation(0.0, (1.0,) * ratios.size, tuple(1.0 / ratios)))
+    assert part.law(1.0).late == pytest.approx(exact.astype(float), abs=1e-9 * ratios.max(), rel=1e-6)
+    assert np.all(np.abs(part.law(1.0).late - exact) <= 1e-9 * ratios)

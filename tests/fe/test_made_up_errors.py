@@ -324,6 +324,7 @@ def test_what_a_setting_moves_a_later_touch_by_counts_by_its_least_trusted_order
     later = replace(TRUTH, strike=replace(STRIKE, velocity=0.31))
     moved = Variation(TRUTH, later, 3.0, {"restitution": 2.0, "duration": 1.0})
     assert _error(moved, lambda strike: strike.velocity) == pytest.approx(0.06)
+    assert _error(replace(moved, weights={}), lambda strike: strike.velocity) == pytest.approx(0.03)
     assert _error(None, lambda strike: strike.velocity) == np.inf
 
 
@@ -470,6 +471,23 @@ def test_the_squared_radius_is_told_at_shares_of_any_contact(rows: int) -> None:
     assert shares[-1] == 1.0
     assert np.all(np.diff(shares) >= 0.0)
     np.testing.assert_allclose(squares, end**2 * shares * (1.0 - shares), atol=1e-3 * end**2)
+
+
+@pytest.mark.parametrize("before", [1, 2, 3, 9])
+def test_a_squared_radius_that_turns_between_rows_is_known_there_by_those_before(before: int) -> None:
+    """A parabola up to the turn, another one after it, which rows on either side do not show."""
+    turn, rows = 0.413, np.random.default_rng(before).uniform(0.05, 0.4, before)
+    time = np.concatenate([np.sort(rows), [0.43, 0.6, 0.8]])
+    squared = np.where(time < turn, time * (2.0 - time), 0.3 * (1.0 - time))
+    whole = np.concatenate([[0.0], time, [1.0]])
+    march: Any = SimpleNamespace(
+        time=np.linspace(0.0, 1.0, 201), separated=True, radius=np.sqrt(squared), radius_time=time
+    )
+    march.depth = march.time * (2.0 * turn - march.time) + 1e-3 * whole.max()
+    shares, squares = squared_radius(march)
+    at = np.isclose(shares, turn, atol=1e-6)
+    assert at.any() == (before >= 3)
+    np.testing.assert_allclose(squares[at], turn * (2.0 - turn), rtol=1e-5)
 
 
 def trusted(order: int, relaxation: Relaxation, flat: bool) -> Trust:
