@@ -479,11 +479,8 @@ def test_a_squared_radius_that_turns_between_rows_is_known_there_by_those_before
     turn, rows = 0.413, np.random.default_rng(before).uniform(0.05, 0.4, before)
     time = np.concatenate([np.sort(rows), [0.43, 0.6, 0.8]])
     squared = np.where(time < turn, time * (2.0 - time), 0.3 * (1.0 - time))
-    whole = np.concatenate([[0.0], time, [1.0]])
-    march: Any = SimpleNamespace(
-        time=np.linspace(0.0, 1.0, 201), separated=True, radius=np.sqrt(squared), radius_time=time
-    )
-    march.depth = march.time * (2.0 * turn - march.time) + 1e-3 * whole.max()
+    march: Any = SimpleNamespace(time=np.linspace(0.0, 1.0, 201), separated=True, radius=np.sqrt(squared))
+    march.depth, march.radius_time = march.time * (2.0 * turn - march.time), time
     shares, squares = squared_radius(march)
     at = np.isclose(shares, turn, atol=1e-6)
     assert at.any() == (before >= 3)
