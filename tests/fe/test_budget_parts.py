@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_contact import reference
+from fe_contact import reference, relaxing_impact
 from fe_contact.budget import several, solved
 from fe_contact.budget.budget import CAUSES
 from fe_contact.budget.certify import _judging
@@ -82,6 +82,18 @@ def test_the_contact_whose_bars_miss_most_says_what_is_refined(
     for row in (["calm", "wild"], ["wild", "calm"]):
         found: Any = SimpleNamespace(numerics=numerics, row=row, parts=row)
         assert reference.Statics(chosen, chosen, chosen).finer(found).settings == shares["wild"]
+
+
+def test_what_relaxes_strained_much_is_refined_by_what_misses_most(monkeypatch: pytest.MonkeyPatch) -> None:
+    """And not at all where the bars meet the tolerance."""
+    monkeypatch.setattr(relaxing_impact, "shares_of", lambda one, cause: np.array([0.1, 3.0]))
+    monkeypatch.setattr(relaxing_impact, "dominant", lambda excess, *_, least: (excess, least))
+    chosen: Any = SimpleNamespace(pinned=())
+    found: Any = SimpleNamespace(numerics=SimpleNamespace(tolerance=1e-3), quantities=None)
+    for met in (True, False):
+        monkeypatch.setattr(relaxing_impact, "meets", lambda quantities, tolerance, met=met: met)
+        settings = relaxing_impact.RelaxingStrikes(chosen, chosen, chosen).finer(found).settings
+        assert settings == (None if met else (dict.fromkeys(CAUSES, 3.0), 1.0))
 
 
 def test_a_round_is_refused_by_the_work_it_takes(numerics: WaveNumerics, monkeypatch: pytest.MonkeyPatch) -> None:
