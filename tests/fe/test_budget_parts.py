@@ -13,18 +13,19 @@ import pytest
 
 from fe_contact import reference, relaxing_impact
 from fe_contact.budget import several, solved
-from fe_contact.budget.budget import CAUSES
-from fe_contact.budget.certify import _judging
+from fe_contact.budget.budget import CAUSES, TotalWork, shares_of
+from fe_contact.budget.certify import _judging, other_mesh
 from fe_contact.budget.refine import Growth
 from fe_contact.budget.runs import AnyRuns, Runs
 from fe_contact.budget.several import Row
 from fe_contact.march.impacts import Followed
 from fe_contact.settings import WaveNumerics
+from fe_contact.steppers.steps import Work
 from fe_contact.waves import certify
 from fe_contact.waves.certify import Waves
 from fe_contact.waves.plan import DEFAULTS
 from lumped.errors import NotReached
-from lumped.result.result import UNITS, Quantity
+from lumped.result.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS, Quantity
 
 SETTINGS: dict[str, Any] = {"tolerance": 3e-3, "steps": 200, "contact_radius": 1e-3, "contact_time": 1e-3}
 
@@ -94,6 +95,49 @@ def test_what_relaxes_strained_much_is_refined_by_what_misses_most(monkeypatch: 
         monkeypatch.setattr(relaxing_impact, "meets", lambda quantities, tolerance, met=met: met)
         settings = relaxing_impact.RelaxingStrikes(chosen, chosen, chosen).finer(found).settings
         assert settings == (None if met else (dict.fromkeys(CAUSES, 3.0), 1.0))
+
+
+@pytest.mark.parametrize("nodes", [None, 24.0])
+@pytest.mark.parametrize("elements", [1.0, 3.0, 5.0, 12.0])
+@pytest.mark.parametrize("order", [1, 2, 3, 4])
+def test_another_mesh_tells_of_the_error_of_one_that_converges(
+    order: int, elements: float, nodes: float | None, numerics: WaveNumerics
+) -> None:
+    """Half as fine, or at least twice, where half would be too coarse; one that may lock, by twice its order."""
+    given = numerics.varied(order=order, elements_per_contact=elements)
+    mesh, trusted = other_mesh(given, nodes=nodes)
+    nodes_of = mesh.order * mesh.elements_per_contact
+    if order < 3:
+        assert mesh.order == 2 * order
+        assert mesh.elements_per_contact >= elements
+        assert nodes_of >= (4.0 * mesh.order if nodes is None else nodes)
+        assert trusted > 2.0, "no order shows: the finer one errs by less than the coarser"
+        return
+    power = {3: 1, 4: 2}[order]
+    finer = mesh.elements_per_contact > elements
+    assert finer == (elements < 2.0 if nodes is None else order * elements < nodes)
+    ratio = mesh.elements_per_contact / elements
+    assert ratio >= 2.0 if finer else ratio == 0.5
+    error, other = elements**-power, mesh.elements_per_contact**-power
+    assert error <= trusted * abs(error - other) <= 1.2500001 * (error if ratio <= 2.0 else 2.0 * error)
+
+
+def test_shares_of_the_tolerance_are_relative_or_absolute_and_of_what_is_known() -> None:
+    """Peaks, duration and impulse by their size, restitution and the history's distance as they are."""
+    values = dict.fromkeys(UNITS, 4.0) | {"restitution": 0.5, "history_l2": 0.0, "duration": None, "impulse": -2.0}
+    one: Any = SimpleNamespace(
+        numerics=SimpleNamespace(tolerance=1e-2),
+        quantities={name: Quantity(value, 0.0, "") for name, value in values.items()},
+        error=lambda name, cause: 0.08,
+    )
+    expected = [0.08 / abs(values[name] or 1.0) for name in RULED_RELATIVE if values[name] is not None]
+    expected += [0.08 for name in RULED_ABSOLUTE]
+    assert sorted(shares_of(one, "mesh")) == pytest.approx(sorted(np.array(expected) / 1e-2))
+
+
+def test_the_work_of_all_marches_is_added_up() -> None:
+    found = TotalWork.of([Work(3, 4, 5), Work(30, 40, 50)], 7, 2, 9, flown=100)
+    assert found == TotalWork(7, 2, 9, marches=2, steps=133, contact_problems=44, iterations=55)
 
 
 def test_a_round_is_refused_by_the_work_it_takes(numerics: WaveNumerics, monkeypatch: pytest.MonkeyPatch) -> None:
