@@ -140,6 +140,25 @@ def test_the_work_of_all_marches_is_added_up() -> None:
     assert found == TotalWork(7, 2, 9, marches=2, steps=133, contact_problems=44, iterations=55)
 
 
+def test_the_work_of_waves_is_that_of_all_runs_their_contacts_and_flights(numerics: WaveNumerics) -> None:
+    """A back-substitution a step, on the unknowns of the run's own body."""
+
+    def run(size: int, flown: int, made: int, *steps: int) -> Any:
+        contacts = [SimpleNamespace(march=SimpleNamespace(work=Work(count, 2 * count, 3 * count))) for count in steps]
+        return certify.WaveRun(Followed(contacts, None), size, flown, made)  # type: ignore[arg-type]
+
+    nothing: Any = None
+    runs = certify.WaveRuns(nothing, nothing, nothing, 1)
+    runs._runs = {numerics: run(10, 7, 1, 100, 50), numerics.varied(steps=3): run(40, 0, 2, 30)}
+    assert runs.spent == 10 * 157 + 40 * 30
+    assert runs.work() == TotalWork(40, 3, 187, marches=3, steps=187, contact_problems=360, iterations=540)
+    told = list[float]()
+    runs.counted = told.append
+    for unknowns in (10, 40, 20):
+        runs._count(unknowns, 2.0)
+    assert told == [2.0, 2.0, 1.0], "steps of the largest body so far"
+
+
 def test_a_round_is_refused_by_the_work_it_takes(numerics: WaveNumerics, monkeypatch: pytest.MonkeyPatch) -> None:
     """Three times the steps on a mesh twice as fine: three times as many, and 24 times the operations."""
     finer = replace(numerics, steps=3 * numerics.steps, elements_per_contact=2.0 * numerics.elements_per_contact)
