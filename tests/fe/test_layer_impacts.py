@@ -214,8 +214,9 @@ def test_pressure_is_told_for_an_instant_within_its_step() -> None:
     surface = struck(scene.geometry, numerics)
     assert isinstance(surface, ScaledSurface)
     operator = surface.operator
+    unit = found.snapshots[0].radii[0] / operator.points[0]
     for shot in found.snapshots:
-        unit = shot.radii[0] / operator.points[0]
+        assert shot.radii == pytest.approx(unit * operator.points), "the mesh stays"
         assert shot.force == pytest.approx(unit**2 * float(operator.weights @ shot.pressure), rel=1e-9)
 
 

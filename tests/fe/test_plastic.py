@@ -490,6 +490,7 @@ def test_an_impact_on_a_body_that_answers_as_known_is_known(striker: Table, know
     assert found.converged
     for name, value in true.items():
         assert found.quantities[name].value == pytest.approx(value, rel=3e-5), name
+    assert found.quantities["history_l2"].value == 0.0
     left = (1.0 - SHARE) * true["peak_depth"]
     assert found.recovery is not None
     assert found.recovery.permanent == pytest.approx(left, rel=1e-4)

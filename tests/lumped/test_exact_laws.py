@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,7 +22,7 @@ from lumped.result.history import End
 from lumped.scene.tables import Motion
 from lumped.shapes.cone import Cone
 from lumped.shapes.power import PowerProfile
-from lumped.solvers.mdr.nest import REST, Adaptive, Grid, Nest, coarse, limit, predicted_turn, problem_of
+from lumped.solvers.mdr.nest import REST, Adaptive, Grid, Nest, Prescribed, coarse, limit, predicted_turn, problem_of
 from lumped.solvers.mdr.row import SERIES_BELOW, Instant, fading
 
 Array = NDArray[np.float64]
@@ -302,6 +302,17 @@ def test_the_bars_cover_the_poorer_of_the_two_integrations_too(
     times = found.history.time
     off = np.abs(poorer.columns.force(times) - found.history.force).max()
     assert off <= found.history.force_error.max()
+
+
+def test_steps_at_given_instants_end_there_and_the_last_one_a_step_beyond() -> None:
+    """So that the event which cuts it lies within a step as long as the others."""
+    steps, now = Prescribed([1.0, 2.5, 4.0]), [0.0]
+    for _ in range(3):
+        at: Any = SimpleNamespace(time=now[-1])
+        now.append(now[-1] + steps.propose(at))
+        assert steps.accepts(at, at)
+    assert now[1:3] == [1.0, 2.5]
+    assert 4.0 < now[3] < 4.0 + 2.0 * 1.5
 
 
 @pytest.mark.parametrize("law", ["mdr", "ting", "correspondence", "hertz"])
