@@ -184,6 +184,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/budget/runs.py", "operations", ""): WORK,
     ("fe_contact/contact/problem.py", "ROOM", ""): WORK,
     ("fe_contact/steppers/struck.py", "FixedContact._by_secants", "solves +"): WORK,
+    ("fe_contact/steppers/struck.py", "FixedContact._at_once", "1 ->"): WORK,
     ("fe_contact/steppers/steps.py", "Work.iterations", ""): WORK,
     ("fe_contact/steppers/steps.py", "Work.steps", ""): WORK,
     ("fe_contact/contact/enforcement/augmented.py", "SLOW, STIFFER, STIFFEST", ""): WORK,

@@ -130,6 +130,8 @@ def test_overlap_with_a_profile_has_the_slopes_that_differences_tell_and_arcs_ar
         assert found.bend[0] == pytest.approx((after.normal - before.normal) / (2.0 * step), abs=1e-5)
     angle = np.linspace(-1.5, 1.5, 7)
     assert OnRound(1.7).along(1.7 * np.array([np.sin(angle), np.cos(angle)])) == pytest.approx(1.7 * angle)
+    beyond = np.array([[-2.0, 2.0], [0.0, 0.0]])
+    assert OnRound(1.7).along(beyond) == pytest.approx(1.7 * np.array([-0.5, 0.5]) * np.pi), "as far as the circle goes"
 
 
 def test_slopes_on_a_ring_laid_flat_turn_with_it() -> None:
