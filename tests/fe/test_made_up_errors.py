@@ -360,6 +360,28 @@ def test_a_viscous_force_is_trusted_no_more_than_the_velocity_that_carries_its_e
     assert bands[1] == pytest.approx(4.0 * bands[0])
 
 
+@pytest.mark.parametrize("order", [1, 2])
+def test_a_later_touch_is_extrapolated_as_all_else_and_the_account_by_the_speed_found(order: int) -> None:
+    """What falls with the scheme's order is gone; the square of a speed is no mean of squares."""
+    errors, terms = 1e-3 * np.array([1.0, -0.5, 2.0]), {"in": 1.0, "out": 0.3, "stored": 0.2, "numerical": 0.01}
+
+    def run(size: float) -> Curve:
+        touched_at, depth, velocity = np.array([2.0, 1e-3, 0.31]) + size * errors
+        strike = replace(STRIKE, touched_at=touched_at, depth=depth, velocity=velocity)
+        energy = TRUTH.energy | {name: value + 1e-2 * size for name, value in terms.items()}
+        return replace(made_up(STEPS, lambda share: 1e-3 * size * share), strike=strike, energy=energy, end_spread=size)
+
+    found = extrapolated(run(1.0), run(2.0**order), order)
+    strike = found.strike
+    assert (strike.touched_at, strike.depth, strike.velocity) == pytest.approx((2.0, 1e-3, 0.31), rel=1e-12)
+    np.testing.assert_allclose(found.mean_force, TRUTH.mean_force, rtol=1e-9, atol=1e-12)
+    assert found.energy["out"] == pytest.approx(0.5 * STRIKE.mass * found.leaving_speed**2, rel=1e-12)
+    assert found.energy["out"] + found.energy["numerical"] == pytest.approx(0.31)
+    assert (found.energy["in"], found.energy["stored"]) == pytest.approx((1.0, 0.2))
+    assert sum(found.energy.values()) == pytest.approx(2.0 * found.energy["in"]), "and is balanced"
+    assert found.end_spread == pytest.approx(1.0 + (1.0 + 2.0**order) / (2.0**order - 1.0))
+
+
 def test_a_run_that_does_not_part_tells_nothing_of_when_another_does() -> None:
     held = replace(TRUTH, separated=False)
     for change in (Variation(TRUTH, held, 1.0), Variation(held, TRUTH, 1.0)):
