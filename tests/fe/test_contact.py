@@ -76,6 +76,17 @@ def test_the_energy_on_the_way_is_what_contact_minimises_and_half_of_force_times
 
 
 @given(SEEDS)
+def test_a_pressure_found_exactly_is_one_that_both_bodies_can_follow(seed: int) -> None:
+    """Of some of the shape functions, where two bodies have no others in common."""
+    problem = random_problem(seed)
+    some = problem.surface.trace[:, : max(1, min(problem.surface.trace.shape) // 2)]
+    problem = replace(problem, surface=replace(problem.surface, carriers=some))
+    found = exact.enforce(problem, np.ones(len(problem.overlap), bool)).signed_pressure
+    left = found - some @ np.linalg.lstsq(some, found, rcond=None)[0]
+    assert np.abs(left).max() <= 1e-9 * max(np.abs(found).max(), 1e-300)
+
+
+@given(SEEDS)
 def test_the_solution_meets_the_conditions_of_contact(seed: int) -> None:
     """Balance of the body; pressure where it touches, gap where it does not, never both."""
     problem = random_problem(seed)

@@ -393,18 +393,27 @@ def test_a_body_softer_by_a_share_errs_by_that_share_of_all_work_that_its_force_
     """In and out, whatever is left of it at the end."""
     worked = replace(TRUTH, energy=TRUTH.energy | {"in": 3.0, "out": 2.0})
     assert Softening(worked, 0.1).energies["stored"] == pytest.approx(0.5)
+    strike = replace(STRIKE, mass=0.7)
+    brought = 0.5 * strike.mass * strike.velocity**2
+    for pulled in (0.0, 2.0):  # by gravity, along a path that errs
+        given = replace(TRUTH, strike=strike, energy=TRUTH.energy | {"in": brought + pulled})
+        assert Softening(given, 0.1).energies["in"] == pytest.approx(0.1 * pulled, abs=1e-12)
 
 
 @pytest.mark.parametrize("worth", [1.0, 3.0])
 def test_a_speed_that_errs_before_the_end_makes_the_bar_of_what_the_striker_takes_along(worth: float) -> None:
     """By the factor of the change, to first order m v dv; the account itself tells nothing of it."""
-    slow = 1e-4
-    late = replace(TRUTH, mean_force=TRUTH.mean_force * (1.0 + slow * np.sin(np.pi * TRUTH.x**2)))
-    change = Variation(TRUTH, late, worth)
+    true, slow = replace(TRUTH, strike=replace(STRIKE, mass=0.7)), 1e-4
+    late = replace(true, mean_force=true.mean_force * (1.0 + slow * np.sin(np.pi * true.x**2)))
+    change = Variation(true, late, worth)
     speed = change.errors["restitution"] * STRIKE.velocity
-    assert speed == pytest.approx(worth * Variation(TRUTH, late, 1.0).velocity)
-    expected = STRIKE.mass * speed * abs(TRUTH.leaving_speed)
-    assert change.energies["out"] == pytest.approx(expected, rel=1e-3)
+    assert speed == pytest.approx(worth * Variation(true, late, 1.0).velocity)
+    assert change.energies["out"] == pytest.approx(0.7 * speed * abs(true.leaving_speed), rel=1e-3)
+    other = replace(late, energy=true.energy | {"stored": 0.2})
+    trusted = Variation(true, other, worth, {"restitution": 2.0}).energies
+    assert trusted["stored"] == pytest.approx(2.0 * worth * 0.2)
+    assert trusted["viscous"] == 0.0
+    assert trusted["out"] == pytest.approx(2.0 * change.energies["out"], rel=1e-2)
 
 
 def test_the_steps_that_count_are_seconds_however_long_the_contact(settings: Numerics) -> None:
@@ -421,6 +430,7 @@ def test_the_steps_that_count_are_seconds_however_long_the_contact(settings: Num
         found = _time_steps(lambda one, runs=runs: runs[one.steps], settings.varied(contact_time=unit), False)
         errors.append([change.errors["peak_force"] if change else np.inf for change in found.changes])
     assert errors[1] == pytest.approx(errors[0], rel=1e-6)
+    assert len(errors[0]) == 2, "and leaves a share of what the finest steps change"
 
 
 def test_a_later_contact_that_comes_late_moves_its_own_force() -> None:

@@ -100,6 +100,8 @@ def test_it_yields_first_under_the_axis() -> None:
     presser = Presser(ground, 4000.0, course.unit)
     here = presser.first(depth / course.unit, math.sqrt(RADIUS * depth) / course.unit)
     assert not np.any(here.state[1])
+    assert ground.stored(here.displacement, here.state) == pytest.approx(0.4 * here.force * here.depth, rel=0.02)
+    assert ground.worked(here.state) == 0.0
     core = ground.encounter.body.core
     stress = ground.yielding.flowed(core.gradient(here.displacement), *here.state).stress
     mean = stress[[0, 3, 4]].mean(axis=0)
