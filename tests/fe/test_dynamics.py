@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from scipy.linalg import eigh, expm
 
 from fe_contact.assembly.interior import factorized
-from fe_contact.bodies.bar import Bar, falling
+from fe_contact.bodies.bar import Bar, falling, line_elements
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.dynamics import stepping
 from fe_contact.dynamics.body import BodyState, BodyWithMass, Part, Pressing, state_of, undeformed
@@ -395,3 +395,15 @@ def test_what_makes_up_for_the_lag_of_a_step_is_exact_but_for_rounding() -> None
     part = Part(sparse.csc_matrix(np.eye(1)), Relaxation(0.0, (1.0,) * ratios.size, tuple(1.0 / ratios)))
     assert part.law(1.0).late == pytest.approx(exact.astype(float), abs=1e-9 * ratios.max(), rel=1e-6)
     assert np.all(np.abs(part.law(1.0).late - exact) <= 1e-9 * ratios)
+
+
+@pytest.mark.parametrize("tip", [1.0, 0.25])
+def test_a_bar_cut_into_elements_has_its_mass_where_it_is_and_its_stiffness(tip: float) -> None:
+    """Linear motions are exact: kinetic energy of a bar that turns about its end, elastic energy of one stretched."""
+    bar = Bar(length=0.7, area=0.02, density=800.0, relaxation=Relaxation(3.0))
+    line = line_elements(bar, 5, tip)
+    place = np.concatenate([[0.0], np.cumsum(0.7 / (4.0 + tip) * np.array([tip, 1.0, 1.0, 1.0, 1.0]))])
+    for motion, inertia in ((np.ones(6), 0.7), (place, 0.7**3 / 3.0)):
+        held = np.einsum("ei,eij,ej", motion[line.dofs], line.mass, motion[line.dofs])
+        assert held == pytest.approx(800.0 * 0.02 * inertia)
+    assert line.stiffness @ place == pytest.approx(0.02 * np.array([-1.0, 0.0, 0.0, 0.0, 0.0, 1.0]), abs=1e-12)
