@@ -273,6 +273,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/budget/variation.py", "Variation._duration", "if speed"): "a guard against dividing by zero itself",
     ("fe_contact/budget/variation.py", "Variation.energies", "0.5 * speed"): "the square of a small error",
     ("fe_contact/steppers/steps.py", "Inertia.moved", "strike.end_time - state.time"): "an end time but for rounding",
+    ("fe_contact/relaxing_impact.py", "Marcher.march", "self.strike.end_time *"): "an end time but for rounding",
     ("lumped/solvers/mdr/march.py", "Shrinking.__init__", "0.0 -> 0.1"): "a guard against dividing by zero itself",
     ("fe_contact/budget/certify.py", "KEPT", "0.4 -> 0.04"): "of 400 balls on as fast branches none needs it",
     ("fe_contact/budget/certify.py", "ROUNDING", ""): "below what any result is asked for",

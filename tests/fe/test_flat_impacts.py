@@ -258,6 +258,20 @@ def test_a_first_step_that_sees_nothing_is_doubled_up_to_a_mean_step(share: floa
     assert found.work.steps == len(inside) - 1
 
 
+def test_a_fluid_stops_a_striker_when_it_has_taken_all_but_a_faint_share_of_its_momentum(settings_of: Settings) -> None:
+    """Damped beyond oscillation, E tau times the area: it sinks by m v/(E tau area), and stays to the end."""
+    mass, stiffness, tau = 0.8, 2.5, 0.1
+    strike = Strike(np.zeros_like, mass, 0.3, 0.0, Relaxation(0.0, (1.0,), (tau,)), 200.0)
+    found = marched(FlatStepper(strike, stiffness, 1.0, settings_of(strike, steps=160).varied(contact_time=60.0)))
+    assert not found.separated
+    assert found.time[-1] == pytest.approx(200.0)
+    assert found.impulse[-1] == pytest.approx(mass * 0.3, rel=2e-4)
+    assert found.depth[-1] == pytest.approx(mass * 0.3 / (stiffness * tau), rel=1e-3)
+    resting = found.work.steps
+    assert np.all(found.depth[resting:] == found.depth[-1])
+    assert found.time[resting] < 0.7 * 200.0, "before the end"
+
+
 def test_the_share_of_the_penalty_is_safety_times_what_half_of_it_changes() -> None:
     """Of a stiffness k a force goes with its root: the share counts all of dk/k, twice dF/F."""
     scene = Scene.load("polymer-punch")

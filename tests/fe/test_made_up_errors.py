@@ -382,6 +382,16 @@ def test_a_later_touch_is_extrapolated_as_all_else_and_the_account_by_the_speed_
     assert found.end_spread == pytest.approx(1.0 + (1.0 + 2.0**order) / (2.0**order - 1.0))
 
 
+@pytest.mark.parametrize("rises", [True, False])
+def test_a_force_that_is_largest_at_either_end_has_places_on_both_sides_of_its_peak(rises: bool) -> None:
+    """Cut off as it rises, or fallen from the touch on."""
+    force = TRUTH.x**2 if rises else 2.0 - TRUTH.x**2
+    curve = replace(TRUTH, mean_force=force, separated=not rises)
+    top, left, right = Variation(curve, curve, 1.0)._about_peak
+    assert 0 <= left < top < right < curve.shares.size
+    assert (top > 0.9 * curve.shares.size) is rises
+
+
 def test_a_run_that_does_not_part_tells_nothing_of_when_another_does() -> None:
     held = replace(TRUTH, separated=False)
     for change in (Variation(TRUTH, held, 1.0), Variation(held, TRUTH, 1.0)):
