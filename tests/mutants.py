@@ -159,6 +159,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("lumped/solvers/mdr/nest.py", "coarse_beyond", "2.0 * NEAR"): GUESS,
     ("fe_contact/steppers/struck.py", "FIRST", ""): GUESS,
     ("fe_contact/steppers/scaled_surface.py", "Stepper._guesses", "1.0 ->"): GUESS,
+    ("fe_contact/steppers/scaled_surface.py", "Stepper._guesses", "if len(steps)"): GUESS,
     ("lumped/solvers/point/memory.py", "StepLoad.tangents", ""): GUESS,
     ("fe_contact/steppers/struck.py", "FixedContact._guesses", ""): GUESS,
     # how much work is done, or told, before the same answer
