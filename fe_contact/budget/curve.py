@@ -402,7 +402,7 @@ def squared_radius(march: March) -> tuple[Array, Array]:
     last = 0.0 if march.separated else float(march.radius[-1] ** 2)
     turn, _ = peak(march.time, march.depth)
     growing = int(np.searchsorted(time, turn))
-    if 3 <= growing < len(time):
+    if 3 <= growing < len(time) and turn < time[growing]:  # no row may stand there already
         before = slice(growing - 3, growing)
         (at_turn,), _ = LocalPolynomials.through(time[before], square[None, before]).at(np.array([turn]))
         time, square = np.insert(time, growing, turn), np.insert(square, growing, at_turn[0])

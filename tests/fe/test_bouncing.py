@@ -21,7 +21,7 @@ from fe_contact.bodies.memory import SurfaceMemory, area_weights
 from fe_contact.budget.plan import plan
 from fe_contact.budget.runs import Runs
 from fe_contact.cli import main
-from fe_contact.march.impacts import FAINTEST, Grounded, Released, _fallen, follow
+from fe_contact.march.impacts import FAINTEST, Grounded, Landing, Released, _fallen, follow, landing
 from fe_contact.steppers.scaled_surface import MEMORY_POINTS, POINTS_A_STEP
 from fe_contact.steppers.steps import Strike
 from lumped.laws import mdr
@@ -333,6 +333,30 @@ def test_a_flight_ends_where_the_gap_closes_after_its_top(height: float, close: 
     """Also long after twice the time of the top, where the surface goes on to recover."""
     assert _fallen(lambda time: height * time * (close - time), 1.0) == pytest.approx(close, rel=1e-12)
     assert _fallen(lambda time: -height, 1.0) is None
+
+
+@pytest.mark.parametrize(("share", "off"), [(5e-4, True), (1e-5, False)])
+def test_a_touch_beside_the_centre_counts_where_it_would_press_by_a_share_that_counts(share: float, off: bool) -> None:
+    """Of the largest force, by Hertz' power of the overlap: half of the usual tolerance, or a hundredth of it."""
+    strike = Strike(lambda r: r**2, 1.0, 0.3, 9.81, Relaxation(1.0), 10.0)
+    march: Any = SimpleNamespace(
+        time=np.array([0.0, 0.1]),
+        depth=np.array([2e-3, 0.0]),
+        impulse=np.array([0.0, 0.6 + 0.981]),
+        memory=SurfaceMemory(area_weights(np.arange(2.0)), np.zeros((2, 2)), np.zeros((0, 2, 2))),
+        memory_time=0.1,
+    )
+    stepper: Any = SimpleNamespace(
+        strike=strike,
+        remembered=lambda memory: memory,
+        standing=lambda: 0,
+        clearance=lambda surface, depth: np.array([0.0, -2e-3 * share ** (2 / 3)]),
+    )
+    found = landing(stepper, march)
+    assert found is Grounded.OFF_CENTRE if off else isinstance(found, Landing)
+    if isinstance(found, Landing):
+        assert found.velocity == pytest.approx(0.3)
+        assert found.time == pytest.approx(0.1 + 2.0 * 0.3 / 9.81)
 
 
 @pytest.mark.parametrize("name", ["two-finite-spheres", "polymer-o-ring"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -10,18 +11,21 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_contact.budget import several
-from fe_contact.budget.budget import CAUSES
+from fe_contact import reference, relaxing_impact
+from fe_contact.budget import several, solved
+from fe_contact.budget.budget import CAUSES, TotalWork, shares_of
+from fe_contact.budget.certify import _judging, other_mesh
 from fe_contact.budget.refine import Growth
-from fe_contact.budget.runs import AnyRuns
+from fe_contact.budget.runs import AnyRuns, Runs
 from fe_contact.budget.several import Row
 from fe_contact.march.impacts import Followed
 from fe_contact.settings import WaveNumerics
+from fe_contact.steppers.steps import Work
 from fe_contact.waves import certify
 from fe_contact.waves.certify import Waves
 from fe_contact.waves.plan import DEFAULTS
 from lumped.errors import NotReached
-from lumped.result.result import Quantity
+from lumped.result.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS, Quantity
 
 SETTINGS: dict[str, Any] = {"tolerance": 3e-3, "steps": 200, "contact_radius": 1e-3, "contact_time": 1e-3}
 
@@ -66,6 +70,131 @@ def test_where_all_settings_are_kept_nothing_is_refined(
     assert waves(numerics, pinned).finer(judged(numerics, 0.4, monkeypatch)).settings is None
 
 
+def test_the_contact_whose_bars_miss_most_says_what_is_refined(
+    numerics: WaveNumerics, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of several in a row, whichever that is."""
+    shares = {"calm": dict.fromkeys(CAUSES, 0.01), "wild": dict.fromkeys(CAUSES, 3.0)}
+    monkeypatch.setattr(reference, "meets", lambda part, tolerance: False)
+    monkeypatch.setattr(reference, "shares_of", lambda one, cause: np.array([0.0, shares[one][cause]]))
+    monkeypatch.setattr(reference, "_too_dear", lambda found, finer: "")
+    monkeypatch.setattr(reference, "dominant", lambda excess, *_, least: excess)
+    chosen: Any = SimpleNamespace(pinned=())
+    for row in (["calm", "wild"], ["wild", "calm"]):
+        found: Any = SimpleNamespace(numerics=numerics, row=row, parts=row)
+        assert reference.Statics(chosen, chosen, chosen).finer(found).settings == shares["wild"]
+
+
+def test_what_relaxes_strained_much_is_refined_by_what_misses_most(monkeypatch: pytest.MonkeyPatch) -> None:
+    """And not at all where the bars meet the tolerance."""
+    monkeypatch.setattr(relaxing_impact, "shares_of", lambda one, cause: np.array([0.1, 3.0]))
+    monkeypatch.setattr(relaxing_impact, "dominant", lambda excess, *_, least: (excess, least))
+    chosen: Any = SimpleNamespace(pinned=())
+    found: Any = SimpleNamespace(numerics=SimpleNamespace(tolerance=1e-3), quantities=None)
+    for met in (True, False):
+        monkeypatch.setattr(relaxing_impact, "meets", lambda quantities, tolerance, met=met: met)
+        settings = relaxing_impact.RelaxingStrikes(chosen, chosen, chosen).finer(found).settings
+        assert settings == (None if met else (dict.fromkeys(CAUSES, 3.0), 1.0))
+
+
+@pytest.mark.parametrize("nodes", [None, 24.0])
+@pytest.mark.parametrize("elements", [1.0, 3.0, 5.0, 12.0])
+@pytest.mark.parametrize("order", [1, 2, 3, 4])
+def test_another_mesh_tells_of_the_error_of_one_that_converges(
+    order: int, elements: float, nodes: float | None, numerics: WaveNumerics
+) -> None:
+    """Half as fine, or at least twice, where half would be too coarse; one that may lock, by twice its order."""
+    given = numerics.varied(order=order, elements_per_contact=elements)
+    mesh, trusted = other_mesh(given, nodes=nodes)
+    nodes_of = mesh.order * mesh.elements_per_contact
+    if order < 3:
+        assert mesh.order == 2 * order
+        assert mesh.elements_per_contact >= elements
+        assert nodes_of >= (4.0 * mesh.order if nodes is None else nodes)
+        assert trusted > 2.0, "no order shows: the finer one errs by less than the coarser"
+        return
+    power = {3: 1, 4: 2}[order]
+    finer = mesh.elements_per_contact > elements
+    assert finer == (elements < 2.0 if nodes is None else order * elements < nodes)
+    ratio = mesh.elements_per_contact / elements
+    assert ratio >= 2.0 if finer else ratio == 0.5
+    error, other = elements**-power, mesh.elements_per_contact**-power
+    assert error <= trusted * abs(error - other) <= 1.2500001 * (error if ratio <= 2.0 else 2.0 * error)
+
+
+def test_shares_of_the_tolerance_are_relative_or_absolute_and_of_what_is_known() -> None:
+    """Peaks, duration and impulse by their size, restitution and the history's distance as they are."""
+    values = dict.fromkeys(UNITS, 4.0) | {"restitution": 0.5, "history_l2": 0.0, "duration": None, "impulse": -2.0}
+    one: Any = SimpleNamespace(
+        numerics=SimpleNamespace(tolerance=1e-2),
+        quantities={name: Quantity(value, 0.0, "") for name, value in values.items()},
+        error=lambda name, cause: 0.08,
+    )
+    expected = [0.08 / abs(values[name] or 1.0) for name in RULED_RELATIVE if values[name] is not None]
+    expected += [0.08 for name in RULED_ABSOLUTE]
+    assert sorted(shares_of(one, "mesh")) == pytest.approx(sorted(np.array(expected) / 1e-2))
+
+
+def test_the_work_of_all_marches_is_added_up() -> None:
+    found = TotalWork.of([Work(3, 4, 5), Work(30, 40, 50)], 7, 2, 9, flown=100)
+    assert found == TotalWork(7, 2, 9, marches=2, steps=133, contact_problems=44, iterations=55)
+
+
+def test_the_work_of_waves_is_that_of_all_runs_their_contacts_and_flights(numerics: WaveNumerics) -> None:
+    """A back-substitution a step, on the unknowns of the run's own body."""
+
+    def run(size: int, flown: int, made: int, *steps: int) -> Any:
+        contacts = [SimpleNamespace(march=SimpleNamespace(work=Work(count, 2 * count, 3 * count))) for count in steps]
+        return certify.WaveRun(Followed(contacts, None), size, flown, made)  # type: ignore[arg-type]
+
+    nothing: Any = None
+    runs = certify.WaveRuns(nothing, nothing, nothing, 1)
+    runs._runs = {numerics: run(10, 7, 1, 100, 50), numerics.varied(steps=3): run(40, 0, 2, 30)}
+    assert runs.spent == 10 * 157 + 40 * 30
+    assert runs.work() == TotalWork(40, 3, 187, marches=3, steps=187, contact_problems=360, iterations=540)
+    told = list[float]()
+    runs.counted = told.append
+    for unknowns in (10, 40, 20):
+        runs._count(unknowns, 2.0)
+    assert told == [2.0, 2.0, 1.0], "steps of the largest body so far"
+
+
+def test_a_round_is_refused_by_the_work_it_takes(numerics: WaveNumerics, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three times the steps on a mesh twice as fine: three times as many, and 24 times the operations."""
+    finer = replace(numerics, steps=3 * numerics.steps, elements_per_contact=2.0 * numerics.elements_per_contact)
+    found: Any = SimpleNamespace(numerics=numerics, work=SimpleNamespace(steps=1000), surface=None)
+    monkeypatch.setattr(reference, "operations", lambda work, surface: 1e9)
+    for bound, taken, told in (
+        ("MOST_STEPS", 3000, "about 3000 steps"),
+        ("MOST_OPERATIONS", 2.4e10, r"about 2.4e\+10"),
+    ):
+        monkeypatch.setattr(reference, bound, 1.01 * taken)
+        assert reference._too_dear(found, finer) == ""
+        monkeypatch.setattr(reference, bound, 0.99 * taken)
+        assert re.search(told, reference._too_dear(found, finer))
+        monkeypatch.setattr(reference, bound, 1e99)
+
+
+def test_what_one_contact_misses_is_said_without_its_number() -> None:
+    quantity = {name: Quantity(1.0, 1e-2 if name == "duration" else 1e-4, "") for name in UNITS}
+    found: Any = SimpleNamespace(numerics=SimpleNamespace(tolerance=1e-3), parts=(quantity,))
+    for impacts, said in ((1, "tolerance"), (2, "contact 1: tolerance")):
+        scene: Any = SimpleNamespace(motion=SimpleNamespace(impacts=impacts))
+        first, *_ = solved._missed(scene, SimpleNamespace(refused=""), found)  # type: ignore[arg-type]
+        assert first == f"{said} 0.001 not reached: duration to 0.01"
+
+
+@pytest.mark.parametrize("few", [True, False])
+def test_a_mesh_is_varied_with_no_fewer_steps_where_few_would_hide_what_it_changes(
+    few: bool, numerics: WaveNumerics
+) -> None:
+    """One that stays in its place, or is coarse."""
+    cheap, settings = (numerics.varied(steps=steps) for steps in ((400, 160) if few else (160, 400)))
+    assert _judging(settings, cheap, "mesh", True).steps == 400
+    assert _judging(settings.varied(elements_per_contact=1.0), cheap, "mesh").steps == 400
+    assert _judging(settings.varied(elements_per_contact=40.0), cheap, "mesh") == cheap
+
+
 def test_rows_of_a_curve_with_waves_follow_the_tolerance(numerics: WaveNumerics) -> None:
     """A polynomial of degree five between them: twice as many err by 2^-5. Fewer steps leave no fewer rows."""
     many = replace(numerics, steps=20_000)
@@ -99,6 +228,8 @@ def test_a_run_that_fails_tells_nothing_of_any_contact_and_is_not_run_again(nume
     assert runs.curve(0, numerics) is None
     assert runs.curve(1, numerics) is None
     assert runs.tried == 1
+    alike: Any = runs
+    assert Runs.curve_at_corners(alike, 0, numerics) is None  # type: ignore[arg-type]
 
 
 def test_a_touch_is_as_uncertain_as_contact_and_flight_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -146,12 +277,14 @@ def test_every_contact_is_told_by_its_own_touch_which_errs_more_from_one_to_the_
         assert told["start"] == pytest.approx(0.7 * number)
         assert told["start_error"] == pytest.approx(late)
         assert told["velocity"] == 3.0 - number
+        before = row.budgets[max(number - 1, 0)]
+        slower = causes * before.curve.strike.velocity * before.error("restitution", "") if number else 0.0
+        assert told["velocity_error"] == pytest.approx(slower)
         assert told["peak_time"] == pytest.approx(0.7 * number + one.curve.quantities["peak_time"])
         assert told["peak_time_error"] == pytest.approx(late + causes * one.error("peak_time", ""))
         for name in ("duration", "restitution", "peak_force", "peak_depth"):
             assert told[name] == one.curve.quantities[name]
             assert told[f"{name}_error"] == pytest.approx(causes * one.error(name, ""))
-    assert row.contacts[0]["velocity_error"] == 0.0
 
 
 def test_a_quantity_of_all_contacts_is_told_by_one_of_them_or_by_their_sum(row: Row) -> None:

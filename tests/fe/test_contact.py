@@ -60,6 +60,32 @@ def starts(seed: int, problem: ContactProblem) -> list[np.ndarray]:
     return [np.zeros(points, bool), np.ones(points, bool), *(rng.random((4, points)) < 0.5)]
 
 
+@pytest.mark.parametrize("yielding", [0.0, 0.3])
+@given(seed=SEEDS)
+def test_the_energy_on_the_way_is_what_contact_minimises_and_half_of_force_times_overlap(
+    seed: int, yielding: float
+) -> None:
+    """Of forces and the displacement that belongs to them; the half where the contact is found (Clapeyron)."""
+    problem = replace(random_problem(seed), yielding=yielding)
+    p = solve(problem, np.ones(len(problem.overlap), bool)).pressure
+    forces = problem.surface.weights * p
+    point = contact._Point(forces, yielding * float(forces.sum()), p / problem.penalty)
+    found, size = point.energy(problem), 1e-9 * float(np.abs(forces) @ np.abs(problem.overlap))
+    assert found == pytest.approx(energy(problem, displacement(problem.surface, p), point.retreat), abs=size)
+    assert found == pytest.approx(0.5 * float(forces @ problem.overlap), abs=size)
+
+
+@given(SEEDS)
+def test_a_pressure_found_exactly_is_one_that_both_bodies_can_follow(seed: int) -> None:
+    """Of some of the shape functions, where two bodies have no others in common."""
+    problem = random_problem(seed)
+    some = problem.surface.trace[:, : max(1, min(problem.surface.trace.shape) // 2)]
+    problem = replace(problem, surface=replace(problem.surface, carriers=some))
+    found = exact.enforce(problem, np.ones(len(problem.overlap), bool)).signed_pressure
+    left = found - some @ np.linalg.lstsq(some, found, rcond=None)[0]
+    assert np.abs(left).max() <= 1e-9 * max(np.abs(found).max(), 1e-300)
+
+
 @given(SEEDS)
 def test_the_solution_meets_the_conditions_of_contact(seed: int) -> None:
     """Balance of the body; pressure where it touches, gap where it does not, never both."""

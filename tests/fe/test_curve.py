@@ -209,6 +209,14 @@ def test_no_step_reaches_the_end_that_is_only_expected(steps: int) -> None:
     assert max(share_of_rest(left, steps) for left in np.geomspace(1e-12, 1.0, 200)) < 1.0
 
 
+@pytest.mark.parametrize("share", [0.1, 0.3, 0.5])
+def test_steps_fill_the_expected_contact_half_of_them_before_the_peak_and_grow_after_it(share: float) -> None:
+    lengths = np.array([step_length(done, 40, share) for done in range(44)])
+    assert lengths[:20].sum() == pytest.approx(share)
+    assert lengths[:40].sum() == pytest.approx(1.0)
+    assert np.all(lengths[40:] > lengths[39:-1])
+
+
 @pytest.mark.parametrize("steps", [40, 400])
 def test_a_contact_fifty_times_as_long_as_expected_is_followed_to_its_end(steps: int) -> None:
     time, done = 0.0, 0

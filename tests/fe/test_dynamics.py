@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from scipy.linalg import eigh, expm
 
 from fe_contact.assembly.interior import factorized
-from fe_contact.bodies.bar import Bar, falling
+from fe_contact.bodies.bar import Bar, falling, line_elements
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.dynamics import stepping
 from fe_contact.dynamics.body import BodyState, BodyWithMass, Part, Pressing, state_of, undeformed
@@ -121,16 +121,28 @@ def test_a_bulk_with_memory_keeps_the_order(name: str) -> None:
     np.testing.assert_allclose(rates, ORDER[name], atol=0.2, err_msg=str(errors))
 
 
-@given(st.floats(0.0, 1.0))
-def test_generalised_alpha_damps_the_fastest_oscillations_by_rho(rho: float) -> None:
+FASTEST: dict[str, Callable[[float], float]] = {
+    "generalised_alpha": lambda rho: rho,
+    "hht": lambda rho: max(rho, 0.5),
+    "trapezoidal": lambda rho: 1.0,
+    "fully_implicit": lambda rho: math.sqrt(0.5),  # x^2 - x/2 + 1/2 of Newmark's beta = gamma = 1
+}
+
+
+@pytest.mark.parametrize("name", FASTEST)
+@given(rho=st.floats(0.0, 1.0))
+def test_an_implicit_scheme_damps_the_fastest_oscillations_by_rho_as_far_as_it_leaves_a_choice(
+    name: str, rho: float
+) -> None:
     """One step of an oscillator a million times faster than the step: its amplification matrix's eigenvalues."""
     dt, stiff = 1.0, 1e12
-    alpha_m, alpha_f, beta, gamma = WAVE_SCHEMES.get("generalised_alpha").of(rho)
+    alpha_m, alpha_f, beta, gamma = WAVE_SCHEMES.get(name).of(rho)
     # rows: Newmark's displacement, its velocity, the balance; columns u, v, a
     new = np.array([[1, 0, -beta * dt**2], [0, 1, -gamma * dt], [(1 - alpha_f) * stiff, 0, 1 - alpha_m]])
     old = np.array([[1, dt, (0.5 - beta) * dt**2], [0, 1, (1 - gamma) * dt], [-alpha_f * stiff, 0, -alpha_m]])
     radius = np.abs(np.linalg.eigvals(np.linalg.solve(new, old))).max()
-    assert radius == pytest.approx(rho, abs=2e-4)  # a triple eigenvalue splits by the cube root of rounding
+    # a triple eigenvalue splits by the cube root of rounding
+    assert radius == pytest.approx(FASTEST[name](rho), abs=2e-4)
 
 
 def test_central_difference_is_stable_up_to_two_over_omega() -> None:
@@ -413,3 +425,25 @@ def test_a_constraint_on_a_surface_with_mass_acts_from_the_first_instant() -> No
     choices = Choices(WAVE_SCHEMES.get("central_difference").of(1.0), Enforced(exact, 1.0), 0.02)
     motion = march(body, -np.ones(51), choices, 1.98, np.eye(51))
     np.testing.assert_allclose(motion.force, 1.0, atol=1e-9)
+
+
+def test_what_makes_up_for_the_lag_of_a_step_is_exact_but_for_rounding() -> None:
+    """(1/(1 - exp(-x)) - 1/2 - 1/x) per modulus, x the step over the relaxation time; by a longer mantissa."""
+    ratios = np.geomspace(1e-5, 10.0, 61)
+    long = ratios.astype(np.longdouble)
+    exact = -1.0 / np.expm1(-long) - 0.5 - 1.0 / long
+    part = Part(sparse.csc_matrix(np.eye(1)), Relaxation(0.0, (1.0,) * ratios.size, tuple(1.0 / ratios)))
+    assert part.law(1.0).late == pytest.approx(exact.astype(float), abs=1e-9 * ratios.max(), rel=1e-6)
+    assert np.all(np.abs(part.law(1.0).late - exact) <= 1e-9 * ratios)
+
+
+@pytest.mark.parametrize("tip", [1.0, 0.25])
+def test_a_bar_cut_into_elements_has_its_mass_where_it_is_and_its_stiffness(tip: float) -> None:
+    """Linear motions are exact: kinetic energy of a bar that turns about its end, elastic energy of one stretched."""
+    bar = Bar(length=0.7, area=0.02, density=800.0, relaxation=Relaxation(3.0))
+    line = line_elements(bar, 5, tip)
+    place = np.concatenate([[0.0], np.cumsum(0.7 / (4.0 + tip) * np.array([tip, 1.0, 1.0, 1.0, 1.0]))])
+    for motion, inertia in ((np.ones(6), 0.7), (place, 0.7**3 / 3.0)):
+        held = np.einsum("ei,eij,ej", motion[line.dofs], line.mass, motion[line.dofs])
+        assert held == pytest.approx(800.0 * 0.02 * inertia)
+    assert line.stiffness @ place == pytest.approx(0.02 * np.array([-1.0, 0.0, 0.0, 0.0, 0.0, 1.0]), abs=1e-12)

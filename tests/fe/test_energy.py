@@ -15,7 +15,7 @@ import numpy.typing as npt
 import pytest
 
 import fe_contact
-from fe_contact.march.impact import _crept
+from fe_contact.march.impact import _crept, balanced, onwards
 from lumped import Relaxation, Result, Scene, laws, simulate
 
 Array = npt.NDArray[np.float64]
@@ -126,3 +126,17 @@ def test_what_a_scheme_of_order_one_loses_is_told(name: str) -> None:
     found = fe_contact.run(Scene.load(name), 1e-2, numerics={"scheme": "backward_euler", "steps": 40})
     assert found.energy["numerical"] > 0.05 * found.energy["in"]
     assert abs(found.energy["residual"]) < 1e-12 * found.energy["in"]
+
+
+def test_an_account_carried_on_leaves_open_what_both_contacts_do() -> None:
+    """It ends with what the later contact gives back and stores; what is lost adds up, the flight's heat with it."""
+    terms = ("in", "out", "stored", "viscous", "radiated", "contact", "numerical")
+    first, later = (
+        balanced(dict(zip(terms, row, strict=True))) for row in np.random.default_rng(4).uniform(size=(2, 7))
+    )
+    found, heat = onwards(later, first, 0.3), 0.3
+    assert found["residual"] == pytest.approx(first["residual"] + later["residual"])
+    assert (found["out"], found["stored"]) == (later["out"], later["stored"])
+    for name in ("radiated", "contact", "numerical"):
+        assert found[name] == first[name] + later[name]
+    assert found["viscous"] == pytest.approx(first["viscous"] + later["viscous"] + heat)

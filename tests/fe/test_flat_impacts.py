@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -13,12 +13,14 @@ import pytest
 import scipy.sparse.linalg as linalg
 
 import fe_contact
+from fe_contact.errors import ContactLost
+from fe_contact.march.impact import marched
 from fe_contact.march.impacts import SurfaceBouncer, follow
 from fe_contact.reference import solve
 from fe_contact.schemes.base import SCHEMES
 from fe_contact.settings import Numerics
 from fe_contact.steppers.flat_end import FlatEnd, FlatStepper
-from fe_contact.steppers.steps import Strike
+from fe_contact.steppers.steps import State, Step, Strike
 from lumped import BadInput, Material, Model, NotReached, Relaxation, Result, Scene, laws, simulate
 from lumped.scene.scene import Motion
 from lumped.shapes.plate import Plate
@@ -222,6 +224,52 @@ def test_a_flat_end_that_bounces_comes_back_as_fast_as_it_came(settings_of: Sett
     assert second.strike.touched_at == pytest.approx(first.march.time[-1] + 2.0 * 0.3 / 0.05, rel=1e-5)
     assert second.strike.depth == pytest.approx(0.0, abs=1e-6)
     assert second.march.time[-1] == pytest.approx(first.march.time[-1], rel=1e-5)
+
+
+class Blind(FlatStepper):
+    """Sees no contact in a first step shorter than ``seen``, s."""
+
+    seen = 0.0
+
+    def step(self, state: State, steps: Sequence[Step], length: float) -> Step:
+        if not steps and length < self.seen:
+            raise ContactLost(state.time)
+        return super().step(state, steps, length)
+
+
+@pytest.mark.parametrize("share", [0.0, 3e-3, 1.1e-2, 3e-2])
+def test_a_first_step_that_sees_nothing_is_doubled_up_to_a_mean_step(share: float, settings_of: Settings) -> None:
+    """Of 80 in half a period of mass and spring, whose motion the march follows all the same."""
+    strike = Strike(np.zeros_like, 1.0, 0.3, 0.0, Relaxation(1.0), 40.0)
+    period = math.pi / math.sqrt(2.5)
+    stepper = Blind(strike, 2.5, 1.0, settings_of(strike, steps=80).varied(contact_time=period))
+    stepper.seen = share * period
+    if share > 2.0 / 80.0:
+        with pytest.raises(ContactLost):
+            marched(stepper)
+        return
+    found = marched(stepper)
+    assert found.separated
+    assert stepper.seen <= found.time[1] < max(2.0 * stepper.seen, period / 80.0)
+    assert found.time[-1] == pytest.approx(period, rel=1e-3)
+    assert found.impulse[-1] == pytest.approx(0.6, rel=1e-3)
+    inside = found.time[:-1]
+    assert found.depth[:-1] == pytest.approx(0.3 / math.sqrt(2.5) * np.sin(math.sqrt(2.5) * inside), abs=2e-4)
+    assert found.work.steps == len(inside) - 1
+
+
+def test_a_fluid_stops_a_striker_when_it_has_taken_all_but_a_faint_share_of_its_momentum(settings_of: Settings) -> None:
+    """Damped beyond oscillation, E tau times the area: it sinks by m v/(E tau area), and stays to the end."""
+    mass, stiffness, tau = 0.8, 2.5, 0.1
+    strike = Strike(np.zeros_like, mass, 0.3, 0.0, Relaxation(0.0, (1.0,), (tau,)), 200.0)
+    found = marched(FlatStepper(strike, stiffness, 1.0, settings_of(strike, steps=160).varied(contact_time=60.0)))
+    assert not found.separated
+    assert found.time[-1] == pytest.approx(200.0)
+    assert found.impulse[-1] == pytest.approx(mass * 0.3, rel=2e-4)
+    assert found.depth[-1] == pytest.approx(mass * 0.3 / (stiffness * tau), rel=1e-3)
+    resting = found.work.steps
+    assert np.all(found.depth[resting:] == found.depth[-1])
+    assert found.time[resting] < 0.7 * 200.0, "before the end"
 
 
 def test_the_share_of_the_penalty_is_safety_times_what_half_of_it_changes() -> None:

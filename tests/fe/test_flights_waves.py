@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -121,3 +123,39 @@ def test_the_ball_falls_freely_and_the_ledger_closes(cases: list[Case]) -> None:
 def test_a_touch_after_the_end_is_none(cases: list[Case]) -> None:
     flights = Flights(Steppers(cases[0].body, Enforced(penalty, 1.0)), STEP, PATIENCE)
     assert flights.landing(cases[0].parted, 0.5 * cases[0].touch()) is None
+
+
+class Clocked(Flights):
+    """Flights of which the clock alone is told: surfaces meet from ``touch``, s, on."""
+
+    def __init__(self, touch: float, patience: int) -> None:
+        steppers: Any = SimpleNamespace(body=SimpleNamespace(size=1), of=lambda scheme, step: step)
+        super().__init__(steppers, 1.0, patience)
+        self.touch, self.lengths = touch, list[float]()
+
+    def _flown(self, moment: Any, stepper: Any) -> Any:
+        self.steps += 1
+        self.lengths.append(stepper)
+        assert stepper <= 1.0 + moment.state.time / self._patience, "no longer than a share of the flight so far"
+        time = moment.state.time + stepper
+        return SimpleNamespace(time=time, signed_pressure=np.array([1.0 if time >= self.touch else -1.0]))
+
+    def _entered(self, moment: Any, state: Any) -> Any:
+        return SimpleNamespace(state=state)
+
+    def _touched(self, moment: Any) -> Any:
+        return moment
+
+
+@pytest.mark.parametrize("flight", [3.5, 40.5, 1000.5, 54321.5])
+@pytest.mark.parametrize("patience", [2, 5])
+def test_steps_of_a_flight_double_and_shrink_until_the_touch_is_within_the_shortest(
+    flight: float, patience: int
+) -> None:
+    flights = Clocked(flight, patience)
+    still: Any = SimpleNamespace(state=SimpleNamespace(time=0.0))
+    found = flights.landing(still, math.inf)
+    assert found is not None
+    assert flight - 1.0 < found.state.time < flight
+    assert flights.steps < (patience + 3.0) * (math.log2(1.0 + flight / patience) + 2.0)
+    assert min(flights.lengths) == 1.0

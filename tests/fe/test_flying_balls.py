@@ -334,6 +334,13 @@ def test_the_softer_of_two_balls_says_what_is_too_fast() -> None:
     assert not too_fast(Scene.load("two-finite-spheres-waves", both))
 
 
+@pytest.mark.parametrize(("share", "fast"), [(0.1, False), (0.5, True)])
+def test_what_strains_by_a_tenth_at_most_is_not_too_fast(share: float, fast: bool) -> None:
+    """Velocity over that of shear waves: the strain behind a front."""
+    speed = math.sqrt(STEEL["E"] / (2.0 * (1.0 + STEEL["nu"]) * STEEL["density"]))
+    assert bool(too_fast(ball(share * speed))) is fast
+
+
 @pytest.mark.parametrize("target", [PLANE, HALF_SPACE])
 def test_a_ball_with_inertia_needs_its_density(target: dict[str, Any]) -> None:
     table = ball(1.0, target).to_dict()

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from fe_contact.errors import BodyTooThin, ContactTooWide
-from fe_contact.indentation import indent, press, settings
+from fe_contact.indentation import CAUSES, FEWEST, Indenting, _accompanied, indent, press, settings
 from lumped import BadInput, Material, Relaxation
 from lumped.indentation import Indentation
 from lumped.scene.indenter import Indenter
@@ -238,3 +239,47 @@ def test_a_cone_flat_or_upright_is_refused(angle: float) -> None:
 def test_a_rod_larger_than_its_ring_is_refused() -> None:
     with pytest.raises(BadInput, match="inner radius"):
         assert Case(shaped("cylinder", 0.01, 0.1), Ring(0.01, 3e-3), 0.3, (1e-5,)).indenter
+
+
+def indenting(depth: list[float], finite: bool) -> Indenting:
+    elastic: Any = SimpleNamespace(model=SimpleNamespace(finite=finite))
+    return Indenting(elastic, np.array(depth), np.array(depth), frozenset(), lambda *word, **_: None)
+
+
+def test_a_setting_is_told_by_depths_from_the_smallest_to_the_largest() -> None:
+    """By all of them where strains are small; places in the row as it was asked for."""
+    depth = np.random.default_rng(3).uniform(1.0, 2.0, 12)
+    few = indenting(depth.tolist(), True)._telling(4)
+    assert few.size == 4
+    assert np.all(np.diff(few) > 0)
+    assert {int(depth.argmin()), int(depth.argmax())} < set(few.tolist())
+    rank = np.sort(np.argsort(np.argsort(depth))[few])
+    assert np.diff(rank) == pytest.approx(11.0 / 3.0, abs=1.0), "evenly between"
+    for all_of in (indenting(depth.tolist(), False)._telling(4), indenting(depth.tolist(), True)._telling(12)):
+        assert np.array_equal(all_of, np.arange(12))
+
+
+@pytest.mark.parametrize("asked", [[2e-3], [2e-3, 1.9e-3], [1e-3, 2e-3]])
+def test_few_depths_are_accompanied_by_others_down_to_where_an_edge_lies_elsewhere(asked: list[float]) -> None:
+    """A contact radius, root of the depth, by a sixth to a half; those asked for come first; enough are alone."""
+    found = _accompanied(np.array(asked), FEWEST)
+    assert found[: len(asked)].tolist() == asked
+    assert found.size == len(asked) + FEWEST
+    assert found.max() == pytest.approx(2e-3)
+    assert 0.5 < np.sqrt(found.min() / 2e-3) < 5.0 / 6.0
+    many = np.linspace(1.0, 2.0, FEWEST)
+    assert _accompanied(many, FEWEST) is many
+
+
+def test_forces_are_pressed_finer_until_all_bars_together_meet_the_tolerance() -> None:
+    """Each alone would."""
+    way, numerics = indenting([1.0, 2.0], False), settings({"tolerance": 1e-2}, Sphere(1.0))
+    for share, met in ((0.45, True), (0.55, False)):
+        budget = {name: np.array([0.0, share * 1e-2 * (name in ("mesh", "penalty"))]) for name in CAUSES}
+        found: Any = SimpleNamespace(budget=budget, numerics=numerics)
+        finer = way.finer(found).settings
+        assert (finer is None) is met
+        if finer is not None:
+            assert finer.elements_per_contact > numerics.elements_per_contact
+            assert finer.penalty > numerics.penalty
+            assert finer.far_radius == numerics.far_radius

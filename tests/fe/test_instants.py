@@ -130,6 +130,7 @@ def test_an_elastic_pressure_is_hertz_from_the_first_step_to_the_edge() -> None:
         exact = scene.contact_modulus.relaxed * scene.profile.load_curve.pressure(radii, snapshot.contact_radius)
         found = np.interp(radii, snapshot.radii, snapshot.pressure)
         assert np.abs(found - exact).max() < 1e-2 * exact[0]
+        assert not snapshot.pressure[snapshot.radii > snapshot.contact_radius].any()
 
 
 def test_what_a_straight_line_misses_is_what_ripples(monkeypatch: pytest.MonkeyPatch) -> None:

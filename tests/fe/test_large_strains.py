@@ -117,6 +117,23 @@ def test_overlap_with_a_circle_has_the_slopes_that_differences_tell() -> None:
         assert found.bend[along] == pytest.approx((after.normal - before.normal) / (2.0 * step), abs=1e-8)
 
 
+def test_overlap_with_a_profile_has_the_slopes_that_differences_tell_and_arcs_are_angles() -> None:
+    random, step = np.random.default_rng(8), 1e-5
+    place, moved = random.uniform(0.1, 0.8, (2, 6, 5)), random.uniform(-0.05, 0.05, (2, 6, 5))
+    for obstacle in (OnDeformed(Sphere(1.7), 1.0), OnDeformed(Sphere(3.4), 2.0)):
+        found = obstacle.overlap(place, moved, 0.2)
+        x, z = place + moved
+        assert found.depth == pytest.approx(0.2 + z - 1.7 + np.sqrt(1.7**2 - x**2))
+        shift = step * np.eye(2)[0][:, None, None]
+        after, before = (obstacle.overlap(place, moved + sign * shift, 0.2) for sign in (1.0, -1.0))
+        assert found.normal[0] == pytest.approx((after.depth - before.depth) / (2.0 * step), abs=1e-8)
+        assert found.bend[0] == pytest.approx((after.normal - before.normal) / (2.0 * step), abs=1e-5)
+    angle = np.linspace(-1.5, 1.5, 7)
+    assert OnRound(1.7).along(1.7 * np.array([np.sin(angle), np.cos(angle)])) == pytest.approx(1.7 * angle)
+    beyond = np.array([[-2.0, 2.0], [0.0, 0.0]])
+    assert OnRound(1.7).along(beyond) == pytest.approx(1.7 * np.array([-0.5, 0.5]) * np.pi), "as far as the circle goes"
+
+
 def test_slopes_on_a_ring_laid_flat_turn_with_it() -> None:
     """Of x and z of the plane, told on the mesh: one along itself, zero along the other."""
     random, rolled, step = np.random.default_rng(9), Rolled(2.0), 1e-5

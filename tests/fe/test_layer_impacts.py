@@ -18,6 +18,7 @@ from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.march.impact import march
 from fe_contact.settings import Numerics
+from fe_contact.steppers.scaled_surface import ScaledSurface
 from fe_contact.steppers.steps import Strike
 from fe_contact.steppers.struck import WIDTH, FixedStepper
 from fe_contact.targets.base import struck
@@ -197,6 +198,8 @@ def test_a_step_into_a_ring_ends_with_the_force_of_the_depth_it_ends_at() -> Non
     still = ENFORCEMENTS.get(numerics.enforcement).enforce(pressed, step.solution.sets[0])
     force = stepper.surface.operator.force(stepper.scale, still.pressure)
     assert force == pytest.approx(step.force, rel=1e-9)
+    assert step.work.steps == 1
+    assert 2 < step.work.contact_problems < step.work.iterations, "more than one secant, each by two penalties"
 
 
 def test_pressure_is_told_for_an_instant_within_its_step() -> None:
@@ -206,6 +209,15 @@ def test_pressure_is_told_for_an_instant_within_its_step() -> None:
     told = np.array([snapshot.time for snapshot in found.snapshots])
     assert (told >= found.time[: len(told)]).all()
     assert (told <= found.time[1 : len(told) + 1]).all()
+    assert found.work.steps == len(told)
+    assert found.work.contact_problems == 2 * len(told), "two penalties a step"
+    surface = struck(scene.geometry, numerics)
+    assert isinstance(surface, ScaledSurface)
+    operator = surface.operator
+    unit = found.snapshots[0].radii[0] / operator.points[0]
+    for shot in found.snapshots:
+        assert shot.radii == pytest.approx(unit * operator.points), "the mesh stays"
+        assert shot.force == pytest.approx(unit**2 * float(operator.weights @ shot.pressure), rel=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -324,6 +324,7 @@ def test_what_a_setting_moves_a_later_touch_by_counts_by_its_least_trusted_order
     later = replace(TRUTH, strike=replace(STRIKE, velocity=0.31))
     moved = Variation(TRUTH, later, 3.0, {"restitution": 2.0, "duration": 1.0})
     assert _error(moved, lambda strike: strike.velocity) == pytest.approx(0.06)
+    assert _error(replace(moved, weights={}), lambda strike: strike.velocity) == pytest.approx(0.03)
     assert _error(None, lambda strike: strike.velocity) == np.inf
 
 
@@ -359,6 +360,38 @@ def test_a_viscous_force_is_trusted_no_more_than_the_velocity_that_carries_its_e
     assert bands[1] == pytest.approx(4.0 * bands[0])
 
 
+@pytest.mark.parametrize("order", [1, 2])
+def test_a_later_touch_is_extrapolated_as_all_else_and_the_account_by_the_speed_found(order: int) -> None:
+    """What falls with the scheme's order is gone; the square of a speed is no mean of squares."""
+    errors, terms = 1e-3 * np.array([1.0, -0.5, 2.0]), {"in": 1.0, "out": 0.3, "stored": 0.2, "numerical": 0.01}
+
+    def run(size: float) -> Curve:
+        touched_at, depth, velocity = np.array([2.0, 1e-3, 0.31]) + size * errors
+        strike = replace(STRIKE, touched_at=touched_at, depth=depth, velocity=velocity)
+        energy = TRUTH.energy | {name: value + 1e-2 * size for name, value in terms.items()}
+        return replace(made_up(STEPS, lambda share: 1e-3 * size * share), strike=strike, energy=energy, end_spread=size)
+
+    found = extrapolated(run(1.0), run(2.0**order), order)
+    strike = found.strike
+    assert (strike.touched_at, strike.depth, strike.velocity) == pytest.approx((2.0, 1e-3, 0.31), rel=1e-12)
+    np.testing.assert_allclose(found.mean_force, TRUTH.mean_force, rtol=1e-9, atol=1e-12)
+    assert found.energy["out"] == pytest.approx(0.5 * STRIKE.mass * found.leaving_speed**2, rel=1e-12)
+    assert found.energy["out"] + found.energy["numerical"] == pytest.approx(0.31)
+    assert (found.energy["in"], found.energy["stored"]) == pytest.approx((1.0, 0.2))
+    assert sum(found.energy.values()) == pytest.approx(2.0 * found.energy["in"]), "and is balanced"
+    assert found.end_spread == pytest.approx(1.0 + (1.0 + 2.0**order) / (2.0**order - 1.0))
+
+
+@pytest.mark.parametrize("rises", [True, False])
+def test_a_force_that_is_largest_at_either_end_has_places_on_both_sides_of_its_peak(rises: bool) -> None:
+    """Cut off as it rises, or fallen from the touch on."""
+    force = TRUTH.x**2 if rises else 2.0 - TRUTH.x**2
+    curve = replace(TRUTH, mean_force=force, separated=not rises)
+    top, left, right = Variation(curve, curve, 1.0)._about_peak
+    assert 0 <= left < top < right < curve.shares.size
+    assert (top > 0.9 * curve.shares.size) is rises
+
+
 def test_a_run_that_does_not_part_tells_nothing_of_when_another_does() -> None:
     held = replace(TRUTH, separated=False)
     for change in (Variation(TRUTH, held, 1.0), Variation(held, TRUTH, 1.0)):
@@ -370,6 +403,27 @@ def test_a_body_softer_by_a_share_errs_by_that_share_of_all_work_that_its_force_
     """In and out, whatever is left of it at the end."""
     worked = replace(TRUTH, energy=TRUTH.energy | {"in": 3.0, "out": 2.0})
     assert Softening(worked, 0.1).energies["stored"] == pytest.approx(0.5)
+    strike = replace(STRIKE, mass=0.7)
+    brought = 0.5 * strike.mass * strike.velocity**2
+    for pulled in (0.0, 2.0):  # by gravity, along a path that errs
+        given = replace(TRUTH, strike=strike, energy=TRUTH.energy | {"in": brought + pulled})
+        assert Softening(given, 0.1).energies["in"] == pytest.approx(0.1 * pulled, abs=1e-12)
+
+
+@pytest.mark.parametrize("worth", [1.0, 3.0])
+def test_a_speed_that_errs_before_the_end_makes_the_bar_of_what_the_striker_takes_along(worth: float) -> None:
+    """By the factor of the change, to first order m v dv; the account itself tells nothing of it."""
+    true, slow = replace(TRUTH, strike=replace(STRIKE, mass=0.7)), 1e-4
+    late = replace(true, mean_force=true.mean_force * (1.0 + slow * np.sin(np.pi * true.x**2)))
+    change = Variation(true, late, worth)
+    speed = change.errors["restitution"] * STRIKE.velocity
+    assert speed == pytest.approx(worth * Variation(true, late, 1.0).velocity)
+    assert change.energies["out"] == pytest.approx(0.7 * speed * abs(true.leaving_speed), rel=1e-3)
+    other = replace(late, energy=true.energy | {"stored": 0.2})
+    trusted = Variation(true, other, worth, {"restitution": 2.0}).energies
+    assert trusted["stored"] == pytest.approx(2.0 * worth * 0.2)
+    assert trusted["viscous"] == 0.0
+    assert trusted["out"] == pytest.approx(2.0 * change.energies["out"], rel=1e-2)
 
 
 def test_the_steps_that_count_are_seconds_however_long_the_contact(settings: Numerics) -> None:
@@ -386,6 +440,7 @@ def test_the_steps_that_count_are_seconds_however_long_the_contact(settings: Num
         found = _time_steps(lambda one, runs=runs: runs[one.steps], settings.varied(contact_time=unit), False)
         errors.append([change.errors["peak_force"] if change else np.inf for change in found.changes])
     assert errors[1] == pytest.approx(errors[0], rel=1e-6)
+    assert len(errors[0]) == 2, "and leaves a share of what the finest steps change"
 
 
 def test_a_later_contact_that_comes_late_moves_its_own_force() -> None:
@@ -458,6 +513,20 @@ def test_the_squared_radius_is_told_at_shares_of_any_contact(rows: int) -> None:
     assert shares[-1] == 1.0
     assert np.all(np.diff(shares) >= 0.0)
     np.testing.assert_allclose(squares, end**2 * shares * (1.0 - shares), atol=1e-3 * end**2)
+
+
+@pytest.mark.parametrize("before", [1, 2, 3, 9])
+def test_a_squared_radius_that_turns_between_rows_is_known_there_by_those_before(before: int) -> None:
+    """A parabola up to the turn, another one after it, which rows on either side do not show."""
+    turn, rows = 0.413, np.random.default_rng(before).uniform(0.05, 0.4, before)
+    time = np.concatenate([np.sort(rows), [0.43, 0.6, 0.8]])
+    squared = np.where(time < turn, time * (2.0 - time), 0.3 * (1.0 - time))
+    march: Any = SimpleNamespace(time=np.linspace(0.0, 1.0, 201), separated=True, radius=np.sqrt(squared))
+    march.depth, march.radius_time = march.time * (2.0 * turn - march.time), time
+    shares, squares = squared_radius(march)
+    at = np.isclose(shares, turn, atol=1e-6)
+    assert at.any() == (before >= 3)
+    np.testing.assert_allclose(squares[at], turn * (2.0 - turn), rtol=1e-5)
 
 
 def trusted(order: int, relaxation: Relaxation, flat: bool) -> Trust:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import nullcontext
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -20,7 +22,7 @@ from fe_contact.indentation import indent
 from fe_contact.plastic import ground
 from fe_contact.plastic.course import Course, PlasticLoading, Varied, settings
 from fe_contact.plastic.fields import STRESS, PressedAgain
-from fe_contact.plastic.impact import SPRUNG, Answered, Rebound, _at_most, _release, plan
+from fe_contact.plastic.impact import SPRUNG, Answered, Rebound, _at_most, _release, pilot, plan
 from fe_contact.plastic.indent import _onwards
 from fe_contact.plastic.path import FIRST_RELEASED, RELEASED, PlasticFlowSlow, Presser, Station
 from fe_contact.settings import Numerics
@@ -98,6 +100,8 @@ def test_it_yields_first_under_the_axis() -> None:
     presser = Presser(ground, 4000.0, course.unit)
     here = presser.first(depth / course.unit, math.sqrt(RADIUS * depth) / course.unit)
     assert not np.any(here.state[1])
+    assert ground.stored(here.displacement, here.state) == pytest.approx(0.4 * here.force * here.depth, rel=0.02)
+    assert ground.worked(here.state) == 0.0
     core = ground.encounter.body.core
     stress = ground.yielding.flowed(core.gradient(here.displacement), *here.state).stress
     mean = stress[[0, 3, 4]].mean(axis=0)
@@ -400,6 +404,146 @@ def test_a_body_is_too_fine_by_its_own_number_of_unknowns(order: int, monkeypatc
     monkeypatch.setattr(ground, "MOST_UNKNOWNS", int(0.9 * unknowns))
     with pytest.raises(BodyTooFine, match="accepted up to"):
         ground._basis(mesh, order)
+
+
+@dataclass(eq=False)
+class Known(Presser):
+    """A body whose answer is known, in units of E* and ``unit``: k depth^power, and round a release that gives back a
+    ``SHARE`` of the depth; what its points remember is the greatest depth.
+    """
+
+    def settled(self, state: Any, depth: float, displacement: Array, pressure: Array, radius: float) -> Station:
+        body: Any = self.ground
+        top = max(float(state[0][0]), depth)
+        left = 1.0 - (top - depth) / (SHARE * top)
+        force = body.stiffness * top**body.power * max(left, 0.0) ** body.power
+        reached = 1.0 if body.rim else math.sqrt(body.radius * top * max(left, 0.0))
+        self.counts += (1, 1)
+        return Station(depth, np.full(2, -depth), (np.array([top]),), force, pressure, reached)
+
+
+SHARE = 0.6
+SLOW = 2.0 * math.sqrt(2.0 * yield_energy(0.3) / MASS)
+PUNCH = {"shape": "punch", "radius": RADIUS}
+
+
+@pytest.fixture
+def known(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., None]]:
+    """Puts a body in place of what flows whose force errs by a share that depends on the settings."""
+
+    def put(off: Callable[[Numerics, bool], float] = lambda numerics, cut: 0.0) -> None:
+        def body(course: Course, numerics: Numerics, cut: bool = False) -> Any:
+            power, radius = 1.0 if course.rim else 1.5, RADIUS / course.unit
+            stiffness = (2.0 if course.rim else 4.0 / 3.0 * math.sqrt(radius)) * (1.0 + off(numerics, cut))
+            core, weights = SimpleNamespace(size=2), np.zeros((1, 2))
+            encounter = SimpleNamespace(body=SimpleNamespace(core=core), skin=SimpleNamespace(weights=weights))
+            spent = (1.0 - SHARE) * stiffness / (power + 1.0)
+            return SimpleNamespace(
+                encounter=encounter,
+                rest=(np.zeros(1),),
+                points=np.array([0.3, 0.9]),
+                rim=course.rim,
+                unknowns=2,
+                stored=lambda displacement, state: 0.0,
+                worked=lambda state: spent * float(state[0][0]) ** (power + 1.0),
+                power=power,
+                stiffness=stiffness,
+                radius=radius,
+            )
+
+        monkeypatch.setattr(Course, "ground", body)
+        monkeypatch.setattr("fe_contact.plastic.course.Presser", Known)
+        pilot.cache_clear()
+
+    yield put
+    pilot.cache_clear()
+
+
+def moves_as(striker: Table, scene: Scene) -> dict[str, float]:
+    """The impact on that body, by energy and by the beta function."""
+    power = 1.0 if striker is PUNCH else 1.5
+    k = modulus(0.3) * (2.0 * RADIUS if striker is PUNCH else 4.0 / 3.0 * math.sqrt(RADIUS))
+    deepest = ((power + 1.0) * 0.5 * MASS * scene.velocity**2 / k) ** (1.0 / (power + 1.0))
+    half = deepest / scene.velocity * beta(1.0 / (power + 1.0), 0.5) / (power + 1.0)
+    back = math.sqrt(SHARE)
+    return {
+        "peak_force": k * deepest**power,
+        "peak_depth": deepest,
+        "coming": half,
+        "duration": half * (1.0 + back),
+        "restitution": back,
+        "impulse": MASS * scene.velocity * (1.0 + back),
+    }
+
+
+@pytest.mark.parametrize("striker", [{}, PUNCH], ids=["sphere", "punch"])
+def test_an_impact_on_a_body_that_answers_as_known_is_known(striker: Table, known: Callable[..., None]) -> None:
+    """Planned, struck, recorded, and pressed again for its fields; what it leaves is what does not spring back."""
+    known()
+    scene = Scene.from_dict(tables(mass=MASS, velocity=SLOW, **striker))
+    true, energy = moves_as(striker, scene), 0.5 * MASS * scene.velocity**2
+    expected = plan(scene, {"tolerance": 1e-3}).numerics
+    radius = RADIUS if striker is PUNCH else math.sqrt(RADIUS * true["peak_depth"])
+    assert expected.contact_radius == pytest.approx(radius, rel=0.02)
+    # the plan does not know the release: as far out as in
+    assert expected.contact_time == pytest.approx(2.0 * true.pop("coming"), rel=1e-3)
+    assert expected.peak_share == pytest.approx(0.5, rel=1e-3)
+    found = fe_contact.run(scene, tolerance=1e-3)
+    assert found.converged
+    for name, value in true.items():
+        assert found.quantities[name].value == pytest.approx(value, rel=3e-5), name
+    assert found.quantities["history_l2"].value == 0.0
+    left = (1.0 - SHARE) * true["peak_depth"]
+    assert found.recovery is not None
+    assert found.recovery.permanent == pytest.approx(left, rel=1e-4)
+    assert found.energy["in"] == pytest.approx(energy)
+    assert found.energy["plastic"] == pytest.approx((1.0 - SHARE) * energy, rel=1e-4)
+    assert abs(found.energy["residual"] or 0.0) < 1e-4 * energy
+    again = PressedAgain.of(scene, found)
+    assert again.course.deepest == pytest.approx(true["peak_depth"], rel=0.02)
+    assert again.course.unit * again.peak.depth == pytest.approx(true["peak_depth"], rel=1e-4)
+    assert again.course.unit * again.left == pytest.approx(-left, rel=1e-3)
+
+
+@pytest.mark.parametrize("cause", ["mesh", "penalty", "time_step", "far_field"])
+def test_bars_of_an_impact_hold_what_its_settings_err_by_which_are_refined(
+    cause: str, known: Callable[..., None]
+) -> None:
+    """A force that errs by a share everywhere, with the order of its cause; all but steps, extrapolated, by no more."""
+
+    def off(numerics: Numerics, cut: bool) -> float:
+        errors = {"mesh": 0.3 / numerics.elements_per_contact, "penalty": 40.0 / numerics.penalty}
+        errors |= {"time_step": 80.0 / numerics.steps**2, "far_field": (8.0 if cut else 2.0) / numerics.far_radius**2}
+        return errors[cause]
+
+    known(off)
+    scene = Scene.from_dict(tables(mass=MASS, velocity=SLOW))
+    true, first = moves_as({}, scene), plan(scene, {"tolerance": 1e-3}).numerics
+    found = fe_contact.run(scene, tolerance=1e-3)
+    for name in ("peak_force", "peak_depth", "duration"):
+        quantity = found.quantities[name]
+        wrong, bar = abs((quantity.value or 0.0) - true[name]), quantity.error or 0.0
+        assert wrong <= bar + 2e-5 * true[name], name
+        assert cause == "time_step" or bar <= 2.0 * wrong, name
+    for name in ("restitution", "impulse"):
+        assert found.quantities[name].value == pytest.approx(true[name], rel=1e-6)
+    assert found.recovery is not None
+    left = (1.0 - SHARE) * true["peak_depth"]
+    wrong, bar = abs(found.recovery.permanent - left), found.recovery.error[0]
+    assert wrong <= bar + 1e-5 * left
+    assert cause == "time_step" or bar <= 2.0 * wrong
+    changed = {name for name, value in found.numerics.items() if value != first.as_dict()[name]}
+    setting = {"mesh": "elements_per_contact", "time_step": "steps", "far_field": "far_radius"}.get(cause, cause)
+    assert {setting} <= changed <= {setting, "steps"}
+
+
+def test_a_motion_that_ends_amid_the_contact_is_refused(known: Callable[..., None]) -> None:
+    known()
+    scene = Scene.from_dict(tables(mass=MASS, velocity=SLOW))
+    for share, refused in ((0.99, True), (1.01, False)):
+        ended = replace(scene, motion=replace(scene.motion, end_time=share * moves_as({}, scene)["duration"]))
+        with pytest.raises(BadInput, match=r"motion\.end_time.*the contact lasts") if refused else nullcontext():
+            fe_contact.run(ended, tolerance=1e-3)
 
 
 def releases(power: float, steps: int, unit: float) -> tuple[Array, Array, float]:

@@ -7,6 +7,7 @@ from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import product
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -171,6 +172,23 @@ def test_slopes_at_the_nodes_of_a_step_are_those_of_polynomials() -> None:
     x = half_widths.NODES.places
     for power in range(1, x.size):
         assert half_widths._slopes() @ x**power == pytest.approx(power * x ** (power - 1), abs=1e-10)
+
+
+def test_a_force_that_lacks_a_share_of_itself_is_that_share_away_from_the_true_one() -> None:
+    """Over all parts of a contact, whatever the unit of the force; nothing is no distance from nothing."""
+    rng = np.random.default_rng(6)
+    parts: list[Any] = []
+    for steps in (3, 5):
+        force = rng.uniform(1.0, 2.0, (steps, 4))
+        part = SimpleNamespace(weights=rng.uniform(0.1, 1.0, (steps, 4)), force=force, lacking_force=-0.3 * force)
+        parts.append(part)
+    assert half_widths._l2(parts) == pytest.approx(0.3)
+    parts[0].lacking_force[:] = 0.0
+    squares = [float((part.weights * part.force**2).sum()) for part in parts]
+    assert half_widths._l2(parts) ** 2 == pytest.approx(0.09 * squares[1] / sum(squares))
+    for part in parts:
+        part.force[:] = 0.0
+    assert half_widths._l2(parts) == 0.0
 
 
 def test_an_end_is_known_to_1e_10_whatever_is_asked(campaign_size: Callable[[int], int]) -> None:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,13 +16,13 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from lumped import Result, Scene, laws, simulate
-from lumped.laws import _hereditary
+from lumped.laws import _assembly, _hereditary
 from lumped.laws._assembly import Answer
 from lumped.result.history import End
 from lumped.scene.tables import Motion
 from lumped.shapes.cone import Cone
 from lumped.shapes.power import PowerProfile
-from lumped.solvers.mdr.nest import REST, Adaptive, Grid, Nest, coarse, limit, predicted_turn, problem_of
+from lumped.solvers.mdr.nest import REST, Adaptive, Grid, Nest, Prescribed, coarse, limit, predicted_turn, problem_of
 from lumped.solvers.mdr.row import SERIES_BELOW, Instant, fading
 
 Array = NDArray[np.float64]
@@ -302,6 +302,37 @@ def test_the_bars_cover_the_poorer_of_the_two_integrations_too(
     times = found.history.time
     off = np.abs(poorer.columns.force(times) - found.history.force).max()
     assert off <= found.history.force_error.max()
+
+
+def test_steps_at_given_instants_end_there_and_the_last_one_a_step_beyond() -> None:
+    """So that the event which cuts it lies within a step as long as the others."""
+    steps, now = Prescribed([1.0, 2.5, 4.0]), [0.0]
+    for _ in range(3):
+        at: Any = SimpleNamespace(time=now[-1])
+        now.append(now[-1] + steps.propose(at))
+        assert steps.accepts(at, at)
+    assert now[1:3] == [1.0, 2.5]
+    assert 4.0 < now[3] < 4.0 + 2.0 * 1.5
+
+
+@pytest.mark.parametrize("law", ["mdr", "ting", "correspondence", "hertz"])
+def test_the_force_alone_is_that_of_all_columns(
+    law: str, impact: Callable[..., Scene], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At the touch, after it, and when the contact is over, where nothing presses."""
+    asked = list[Any]()
+
+    def densified(rows: Array, force: Any, *rest: Any) -> Array:
+        asked.append(force.__self__)
+        return np.asarray(_assembly_densified(rows, force, *rest))
+
+    _assembly_densified = _assembly.densified
+    monkeypatch.setattr(_assembly, "densified", densified)
+    found = simulate(getattr(laws, law).of(scene := impact(**CASES["sls"])), scene, 1e-4)
+    times = np.linspace(0.0, found.history.time[-1], 97)
+    (columns,) = asked
+    assert columns.force(times) == pytest.approx(columns(times)[2], abs=1e-12 * found.history.force.max())
+    assert columns.force(times)[[0, -1]] == pytest.approx(0.0, abs=1e-6 * found.history.force.max())
 
 
 @pytest.mark.parametrize("ratio", [*np.geomspace(1e-6, 200.0, 17), np.nextafter(SERIES_BELOW, 0.0), SERIES_BELOW])
