@@ -1,7 +1,7 @@
 """A section in plane strain drawn out along its length, to ends that are free: three-dimensional, linear, at rest.
 
-The section is a mesh of the plane with its supports; along the length y stand line elements of the same order, so that
-shape functions are products. A section's displacements (u, v along its axes, w along the length) strain by their values
+The section is a mesh of the plane with its supports; along the length y stand line elements, so that shape functions
+are products. A section's displacements (u, v along its axes, w along the length) strain by their values
 there and by their slopes along the length, and with shape functions q(y)
 
     strain = B0 q + B1 dq/dy ,    K = A x M + B x C + (B x C)^T + D x S ,
@@ -24,9 +24,9 @@ from fe_contact.assembly.interior import factorized
 from fe_contact.assembly.operators import SOLVED_AT_ONCE, SolidMesh, SurfaceOperator, moduli
 from fe_contact.assembly.surface import contact_quadrature, lagrange, monomials
 from fe_contact.contact.problem import PressedSurface
-from fe_contact.errors import BodyTooFine
+from fe_contact.errors import SolidTooLarge
 
-MOST_ENTRIES = 12_000_000  # of the stiffness: its factors take some 300 MB and, with all that is solved, five seconds
+MOST_ENTRIES = 4_500_000  # work: of A x M; all of the stiffness, its factors and what is solved take 600 MB then
 BOTH = 2.0  # halves of a section
 
 
@@ -48,18 +48,18 @@ class Pressable:
         return cls(surface, operator.points, operator.pull)
 
 
-def extruded(mesh: SolidMesh, poisson: float, corners: Array, held: bool = False) -> Pressable:
+def extruded(mesh: SolidMesh, poisson: float, corners: Array, order: int, held: bool = False) -> Pressable:
     """The section drawn out along ``corners`` (m,) of line elements, ascending from the middle, 0, to the end.
 
-    ``held``: whether the end may not move along the length, so that all of it is in plane strain.
-    Raises BodyTooFine.
+    ``order`` of these; ``held``: whether the end may not move along the length, so that all of it is in plane strain.
+    Raises SolidTooLarge.
     """
     basis, surface = mesh.body.basis, mesh.body.surface
-    order, length = int(basis.elem.maxdeg), float(corners[-1])
+    length = float(corners[-1])
     along = _length(corners, order)
     matrix = _stiffness(mesh, poisson, along)
     free = np.setdiff1d(np.arange(matrix.shape[0]), _fixed(mesh, along[0].shape[0], held))
-    places, weights, trace = surface.quadrature(order)
+    places, weights, trace = surface.quadrature(int(basis.elem.maxdeg))
     pushed = surface.dofs[: trace.shape[1], None] + basis.N * np.arange(along[0].shape[0])
     compliance = _compliance(matrix[free][:, free], np.searchsorted(free, 3 * pushed.ravel() + 1))
     points, widths, trace_along = contact_quadrature(corners, order)
@@ -89,7 +89,7 @@ def _length(corners: Array, order: int) -> tuple[Matrix, Matrix, Matrix]:
 
 
 def _stiffness(mesh: SolidMesh, poisson: float, along: tuple[Matrix, Matrix, Matrix]) -> Matrix:
-    """Of both halves of the section and half of the length, for E* = 1: degree 3 (k + N j) + c. Raises BodyTooFine."""
+    """Of both halves of the section and half of the length, for E* = 1: degree 3 (k + N j) + c. Raises SolidTooLarge."""
     basis, (bulk, shear) = mesh.body.basis, moduli(poisson)
     law = shear * np.diag([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
     law[:3, :3] += bulk - 2.0 * shear / 3.0
@@ -103,9 +103,11 @@ def _stiffness(mesh: SolidMesh, poisson: float, along: tuple[Matrix, Matrix, Mat
         scatter(np.matmul(one.reshape(shape).transpose(0, 2, 1), two.reshape(shape)), dofs, 3 * basis.N).tocsr()
         for one, two in ((value, stress[0]), (value, stress[1]), (slope, stress[1]))
     )
+    for part in (plane, mixed, stiff):
+        part.eliminate_zeros()  # w along the length meets u and v across it in one of them alone
     entries = plane.nnz * along[0].nnz
     if entries > MOST_ENTRIES:
-        raise BodyTooFine(f"a body of {entries} entries in three dimensions", f"accepted up to {MOST_ENTRIES}")
+        raise SolidTooLarge(entries, MOST_ENTRIES)
     twisted = sparse.kron(along[1], mixed)
     return (sparse.kron(along[0], plane) + twisted + twisted.T + sparse.kron(along[2], stiff)).tocsr()
 

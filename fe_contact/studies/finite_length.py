@@ -28,17 +28,19 @@ from fe_contact.threads import one_thread
 from lumped.scene.indenter import Indenter
 from lumped.targets.layer import Layer
 
-ORDER = 3  # of elements, in the section and along the length: none locks, and of order four costs threefold
+ORDER, LOWER = 4, 3  # of the section's elements, and of those that tell how far these are off
+ALONG = 3  # order of the elements along the length
 ELEMENTS = 1.0  # work: elements_per_contact of the section
-FIRST = 1.0 / 6.0  # work: length of the element at an end over the body's depth or its own length; the next ones double
+FIRST = 1.0 / 3.0  # work: element at an end over the body's depth or half its length; the next ones double
+THINNEST = 0.02  # rounding: length over the body's depth below which a slice is in plane stress all through, to 1e-4
+FAR = 15.0  # work: far_radius of a layer that holds its sides by its base
 SOFTER = 0.5  # penalty that the measurement is repeated with, over its own
-# Work: by cause, settings that it is repeated with; two where one alone, by where a contact ends, may show nothing.
-COARSER: Mapping[str, tuple[Mapping[str, float], ...]] = {
-    "section": ({"elements": 0.5}, {"elements": 0.7}),
-    "length": ({"first": 2.0},),
-    "far_field": ({"far": 0.5},),
-}
+# Work: by cause, what elements of the lower order are made coarser by.
+COARSER: Mapping[str, Mapping[str, float]] = {"section": {"elements": 0.5}, "length": {"first": 2.0}}
+NEARER = {"far": 0.5}  # the same of what does not end with its mesh
 CORNER = 1.0  # order of what they change: the stress where an end meets what holds it promises no more
+# Work: depths over the one asked for, which tell errors: where in an element a contact ends, one alone may hide them.
+ACCOMPANYING = (1.0, 0.92, 0.84, 0.76, 0.68)
 
 
 @dataclass(frozen=True)
@@ -72,28 +74,38 @@ class Bodies:
 
     @classmethod
     def of(
-        cls, indenter: Indenter, radius: float, elements: float = 1.0, first: float = 1.0, far: float = 1.0
+        cls,
+        indenter: Indenter,
+        radius: float,
+        order: int = ORDER,
+        elements: float = 1.0,
+        first: float = 1.0,
+        far: float = 1.0,
     ) -> Bodies:
         """For a contact of about a ``radius``, m; elements and lengths over those of this module. Raises NotReached."""
-        given = {"order": ORDER, "elements_per_contact": ELEMENTS * elements, "far_radius": far * _far(indenter)}
+        given = {"order": order, "elements_per_contact": ELEMENTS * elements, "far_radius": far * _far(indenter)}
         target, numerics = indenter.target, settings(given, indenter.shape)
         make = TARGETS.get(target.name).solid
         assert make is not None
         assert target.body_depth is not None
-        mesh, length = make(indenter, np.array([radius]), numerics), 0.5 * indenter.shape.total
+        mesh = make(indenter, np.array([radius]), numerics)
+        length = 0.5 * max(indenter.shape.total, THINNEST * target.body_depth)
         operator = mesh.body.condensed(indenter.material.nu).operator
-        corners = _corners(length, FIRST * first * min(target.body_depth, 2.0 * length)) / mesh.unit
-        drawn = extruded(mesh, indenter.material.nu, corners)
+        corners = _corners(length, FIRST * first * min(target.body_depth, length)) / mesh.unit
+        drawn = extruded(mesh, indenter.material.nu, corners, ALONG)
         half = radius / mesh.unit
         stiffness = float(operator.punched(half).sum()) / (2.0 * half)
         section = Pressable.plane(operator)
         return cls(indenter, section, drawn, mesh.unit, half, stiffness, mesh.ends)
 
-    def change(self, depth: float, penalty: float = 1.0) -> float:
-        """Of the force at a depth, m. Raises IndentationNotSettled, ContactTooWide."""
+    def changes(self, depths: Array, penalty: float = 1.0) -> Array:
+        """Of the force at depths, m, (n,). Raises IndentationNotSettled, ContactTooWide."""
         stiffness = penalty * DEFAULTS["penalty"] * self.stiffness
-        plane, free = (self._force(body, depth, stiffness) for body in (self.section, self.drawn))
-        return free / plane - 1.0
+        plane, free = (
+            np.array([self._force(body, float(depth), stiffness) for depth in depths])
+            for body in (self.section, self.drawn)
+        )
+        return np.asarray(free / plane - 1.0)
 
     def _force(self, body: Pressable, depth: float, penalty: float) -> float:
         target, surface = self.indenter.target, body.surface
@@ -115,24 +127,26 @@ def free_ends(indenter: Indenter, depth: float, progress: Progress = silent) -> 
         check_compressible(indenter)
         indenter.checked((depth,))
         radius = float(expected(indenter, np.array([depth]), settings({}, indenter.shape))[0])
+        depths, trusted = depth * np.array(ACCOMPANYING), factor(CORNER, finer=False)
         progress("a body with free ends in three dimensions")
         base = Bodies.of(indenter, radius)
-        change, trusted = base.change(depth), factor(CORNER, finer=False)
-        budget = {"penalty": trusted * abs(base.change(depth, SOFTER) - change)}
-        causes = [cause for cause in COARSER if not (cause == "far_field" and base.ends)]
-        for count, cause in enumerate(causes):
-            progress(f"the same body, coarser by its {cause}", count, len(causes))
-            others = [Bodies.of(indenter, radius, **coarser).change(depth) for coarser in COARSER[cause]]
-            budget[cause] = trusted * max(abs(other - change) for other in others)
-    return MeasuredEnds(change, budget)
+        changes, softer = base.changes(depths), base.changes(depths, SOFTER)
+        coarser = COARSER if base.ends else {**COARSER, "far_field": NEARER}
+        progress("the same, of a lower order", 1, 2 + len(coarser))
+        lower = Bodies.of(indenter, radius, LOWER).changes(depths)
+        apart = {"penalty": softer - changes, "order": lower - changes}
+        for count, (cause, setting) in enumerate(coarser.items(), 2):
+            progress(f"the same, coarser: {cause}", count, 2 + len(coarser))
+            apart[cause] = Bodies.of(indenter, radius, LOWER, **setting).changes(depths) - lower
+    return MeasuredEnds(float(changes[0]), {cause: trusted * float(abs(one).max()) for cause, one in apart.items()})
 
 
 def _far(indenter: Indenter) -> float:
     """Where meshes end, as settings have it: a sliding layer is stretched as far beside a contact as it is long."""
-    target, usual = indenter.target, float(DEFAULTS["far_radius"])
+    target = indenter.target
     if not isinstance(target, Layer) or target.base != "sliding":
-        return usual
-    return max(usual, indenter.shape.total / (SIDES * target.thickness))
+        return FAR
+    return max(float(DEFAULTS["far_radius"]), indenter.shape.total / (SIDES * target.thickness))
 
 
 def _corners(length: float, first: float) -> Array:
