@@ -26,7 +26,7 @@ from fe_contact.assembly.surface import contact_quadrature, lagrange, monomials
 from fe_contact.contact.problem import PressedSurface
 from fe_contact.errors import SolidTooLarge
 
-MOST_ENTRIES = 4_500_000  # work: of A x M; all of the stiffness, its factors and what is solved take 600 MB then
+MOST_ENTRIES = 4_000_000  # work: of A x M; the stiffness, its factors and what is solved take half a gigabyte then
 BOTH = 2.0  # halves of a section
 
 
@@ -89,7 +89,7 @@ def _length(corners: Array, order: int) -> tuple[Matrix, Matrix, Matrix]:
 
 
 def _stiffness(mesh: SolidMesh, poisson: float, along: tuple[Matrix, Matrix, Matrix]) -> Matrix:
-    """Of both halves of the section and half of the length, for E* = 1: degree 3 (k + N j) + c. Raises SolidTooLarge."""
+    """Of both halves of a section, half of the length, for E* = 1: degree 3 (k + N j) + c. Raises SolidTooLarge."""
     basis, (bulk, shear) = mesh.body.basis, moduli(poisson)
     law = shear * np.diag([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
     law[:3, :3] += bulk - 2.0 * shear / 3.0

@@ -19,7 +19,7 @@ from fe_contact.budget.plan import DEFAULTS
 from fe_contact.budget.variation import factor
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactProblem
-from fe_contact.errors import ContactTooWide, IndentationNotSettled, faults_of
+from fe_contact.errors import ContactTooWide, IndentationNotSettled, SolidTooLarge, faults_of
 from fe_contact.indentation import ROUNDING, expected, settings
 from fe_contact.progress import Progress, silent
 from fe_contact.targets.base import TARGETS
@@ -28,7 +28,7 @@ from fe_contact.threads import one_thread
 from lumped.scene.indenter import Indenter
 from lumped.targets.layer import Layer
 
-ORDER, LOWER = 4, 3  # of the section's elements, and of those that tell how far these are off
+ORDERS = (4, 3)  # of the section's elements: the higher one that memory lets; one less tells how far it is off
 ALONG = 3  # order of the elements along the length
 ELEMENTS = 1.0  # work: elements_per_contact of the section
 FIRST = 1.0 / 3.0  # work: element at an end over the body's depth or half its length; the next ones double
@@ -77,7 +77,7 @@ class Bodies:
         cls,
         indenter: Indenter,
         radius: float,
-        order: int = ORDER,
+        order: int,
         elements: float = 1.0,
         first: float = 1.0,
         far: float = 1.0,
@@ -129,15 +129,15 @@ def free_ends(indenter: Indenter, depth: float, progress: Progress = silent) -> 
         radius = float(expected(indenter, np.array([depth]), settings({}, indenter.shape))[0])
         depths, trusted = depth * np.array(ACCOMPANYING), factor(CORNER, finer=False)
         progress("a body with free ends in three dimensions")
-        base = Bodies.of(indenter, radius)
+        base, order = _finest(indenter, radius)
         changes, softer = base.changes(depths), base.changes(depths, SOFTER)
         coarser = COARSER if base.ends else {**COARSER, "far_field": NEARER}
         progress("the same, of a lower order", 1, 2 + len(coarser))
-        lower = Bodies.of(indenter, radius, LOWER).changes(depths)
+        lower = Bodies.of(indenter, radius, order - 1).changes(depths)
         apart = {"penalty": softer - changes, "order": lower - changes}
         for count, (cause, setting) in enumerate(coarser.items(), 2):
             progress(f"the same, coarser: {cause}", count, 2 + len(coarser))
-            apart[cause] = Bodies.of(indenter, radius, LOWER, **setting).changes(depths) - lower
+            apart[cause] = Bodies.of(indenter, radius, order - 1, **setting).changes(depths) - lower
     return MeasuredEnds(float(changes[0]), {cause: trusted * float(abs(one).max()) for cause, one in apart.items()})
 
 
@@ -147,6 +147,15 @@ def _far(indenter: Indenter) -> float:
     if not isinstance(target, Layer) or target.base != "sliding":
         return FAR
     return max(float(DEFAULTS["far_radius"]), indenter.shape.total / (SIDES * target.thickness))
+
+
+def _finest(indenter: Indenter, radius: float) -> tuple[Bodies, int]:
+    """Of the highest order that memory lets, and that order. Raises SolidTooLarge."""
+    high, low = ORDERS
+    try:
+        return Bodies.of(indenter, radius, high), high
+    except SolidTooLarge:
+        return Bodies.of(indenter, radius, low), low
 
 
 def _corners(length: float, first: float) -> Array:
