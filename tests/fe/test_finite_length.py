@@ -121,7 +121,7 @@ def drawn(rng: np.random.Generator) -> tuple[Indenter, float]:
 def test_bars_hold_what_finer_meshes_find_and_the_ledger_is_right(
     campaign_size: Callable[..., int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The ledger within a factor of two. Finer: twice as many elements across and along, a penalty four times as hard."""
+    """The ledger within a factor of two. Finer: twice as many elements across and along, penalty times four."""
     rng = np.random.default_rng(18)
     outside, wrong = list[str](), list[str]()
     for _ in range(campaign_size(CAMPAIGN)):

@@ -293,7 +293,7 @@ def test_a_long_body_is_in_plane_strain(name: str) -> None:
 
 @pytest.mark.parametrize("nu", [-0.3, 0.0, 0.3, 0.49])
 def test_a_slice_is_in_plane_stress(nu: float) -> None:
-    """E for E/(1 - nu^2) where the base slides or a contact is narrow; that for the confined modulus under a wide one."""
+    """E for E/(1 - nu^2) where the base slides or a contact is narrow; a wide one: that for the confined."""
     short: dict[str, object] = {"striker.length": 1e-6, "target.material.nu": nu}
     confined = (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
     sliding = short | {"target.base": "sliding"}
