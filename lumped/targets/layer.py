@@ -67,10 +67,10 @@ class Layer(Target):
 
         Bonded under a wide one, from the confined modulus to E/(1 - nu^2): by (nu/(1 - nu))^2. There the end lets out
         what the pressure squeezes, as far in as a film's pressure reaches (see :func:`_squeezed`), or, of a strip of
-        half-width a that no volume leaves, 0.63 a: the solution of p'' = -1, Saint-Venant's of a bar under torsion. A
-        layer that slides is shifted by the contact's stress along it over a strip of its edge, as a plane is in
-        plane stress: 4 a/pi, and more by the logarithm of the length, as under a line force. Half a thickness is where
-        what the base holds below the contact lies.
+        half-width a that no volume leaves, 0.63 a: its pressure is Saint-Venant's function of a bar under torsion.
+        Narrow contacts add what lies below them: half of a film's reach, half of two thicknesses at most. A layer that
+        slides is shifted by the stress along it over a strip of its edge, as a plane is in plane stress: 4 a/pi, and
+        more by the logarithm of the length, as under a line force.
         """
         a, half = contact_radius, 0.5 * self.thickness
         if self.base == "sliding":
@@ -78,7 +78,7 @@ class Layer(Target):
             return FreeEnd(nu**2, half + 4.0 / math.pi * a * (1.0 + far))
         narrow, wide = nu**2, (nu / (1.0 - nu)) ** 2
         film = self.thickness * math.sqrt((1.0 - nu) / (1.5 * (1.0 - 2.0 * nu))) if nu < 0.5 else math.inf
-        return FreeEnd(narrow + (wide - narrow) * a / (a + half), min(film, half + TORSION * a))
+        return FreeEnd(narrow + (wide - narrow) * a / (a + half), min(film, min(0.5 * film, 2.0 * half) + TORSION * a))
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput also for a face whose flat part alone is wider than the layer's curve reaches."""

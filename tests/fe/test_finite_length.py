@@ -6,12 +6,14 @@ import json
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
+from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import SolidMesh
-from fe_contact.bodies.extruded import Pressable, extruded
+from fe_contact.bodies.extruded import Pressable, _length, _stiffness, extruded
 from fe_contact.cli import main
 from fe_contact.errors import SolidTooLarge
 from fe_contact.indentation import expected, settings
@@ -43,9 +45,9 @@ def contact(indenter: Indenter, depth: float) -> float:
     return float(expected(indenter, np.array([depth]), settings({}, indenter.shape))[0])
 
 
-def mesh_of(indenter: Indenter, depth: float = 0.05 * THICK) -> SolidMesh:
+def mesh_of(indenter: Indenter, depth: float = 0.05 * THICK, order: int = 2) -> SolidMesh:
     """A coarse section."""
-    numerics = settings({"order": 2, "elements_per_contact": 1.0}, indenter.shape)
+    numerics = settings({"order": order, "elements_per_contact": 1.0}, indenter.shape)
     make = TARGETS.get(indenter.target.name).solid
     assert make is not None
     return make(indenter, np.array([contact(indenter, depth)]), numerics)
@@ -64,6 +66,35 @@ def test_a_block_pressed_alike_all_over_is_strained_alike(nu: float, held: bool)
     sunk = np.linalg.solve(pressed.surface.stiffness, pressed.surface.trace.T @ pressed.surface.weights)
     np.testing.assert_allclose(sunk, height / (1.0 if held else 1.0 - nu**2), rtol=1e-7)
     assert pressed.pull.sum() == pytest.approx(2.0 * width, rel=1e-12)
+
+
+@pytest.mark.parametrize("kind", ["ring", "bonded"])
+def test_a_body_that_turns_is_not_strained(kind: str) -> None:
+    """About all three axes: a ring laid flat has its arcs in the strains along its length, too."""
+    mesh = mesh_of(body(kind, radius=2.0), order=4)
+    basis, corners = mesh.body.basis, np.array([0.0, 0.3, 1.0])
+    x, up = basis.doflocs
+    sine, cosine, across, height = 0.0 * x, 0.0 * x + 1.0, x, up
+    if mesh.inner_radius is not None:  # up is inwards; measured from the ring's axis
+        sine, cosine = np.sin(x / mesh.inner_radius), np.cos(x / mesh.inner_radius)
+        across, height = (mesh.inner_radius - up) * sine, (up - mesh.inner_radius) * cosine
+    y, none = _places(corners, 2)[:, None], 0.0 * x
+    turned = {
+        "the length": (height + 0.0 * y, -across + 0.0 * y, none + 0.0 * y),
+        "the horizontal": (none + 0.0 * y, y + none, -height + 0.0 * y),
+        "the motion": (y + none, none + 0.0 * y, -across + 0.0 * y),
+    }
+    matrix = _stiffness(mesh, 0.3, _length(corners, 2))
+    size = float(abs(matrix).max())
+    for axis, (sideways, upwards, along) in turned.items():
+        moved = np.stack([cosine * sideways + sine * upwards, cosine * upwards - sine * sideways, along], axis=-1)
+        assert abs(matrix @ moved.ravel()).max() <= 1e-5 * size * abs(moved).max(), axis
+
+
+def _places(corners: Array, order: int) -> Array:
+    """Of the nodes along a length."""
+    inner = [np.linspace(*ends, order + 1)[1:] for ends in pairwise(corners)]
+    return np.concatenate([corners[:1], *inner])
 
 
 @pytest.mark.parametrize("nu", [0.3, 0.4999])
