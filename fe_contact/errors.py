@@ -105,6 +105,14 @@ class BodyTooFine(NotReached):
         super().__init__(f"{reason}: {accepted}; cure: {keys}, or a body thicker beside its contact")
 
 
+class SolidTooLarge(NotReached):
+    """A body in three dimensions whose factors would take too much memory."""
+
+    def __init__(self, entries: int, most: int) -> None:
+        reason = f"a body of {entries:.2g} matrix entries in three dimensions: accepted up to {most:.2g}"
+        super().__init__(f"{reason}; cure: a shorter striker, or a body thicker beside its contact")
+
+
 class WavesTooDear(NotReached):
     """An impact with waves that would take many minutes or gigabytes."""
 

@@ -104,6 +104,12 @@ TABLE = (
     Constant("fe_contact.waves.certify", "ORDER", DERIVED, "contact that begins point by point has order one"),
     Constant("fe_contact.waves.certify", "LEAST_NODES", MEASURED, "along the contact radius; fewer are doubled"),
     Constant("fe_contact.waves.certify", "TRUSTED", DERIVED, "two of the five orders between rows"),
+    Constant(
+        "fe_contact.studies.finite_length", "CORNER", DERIVED, "stress where a free end meets a base: no order more"
+    ),
+    Constant(
+        "fe_contact.studies.finite_length", "ACCOMPANYING", MEASURED, "of one depth alone, a bar may be by chance small"
+    ),
     Constant("lumped.laws._hereditary", "SAFETY", MEASURED, "of two integrations with more and with fewer nodes"),
     Constant("lumped.laws._hereditary", "LOCAL_SHARE", WORK, "what a piece may err"),
     Constant("lumped.laws.ting", "ROWS", MEASURED, "half as many change the bar by 0.02 of it, and SAFETY adds half"),

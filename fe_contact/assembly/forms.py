@@ -70,7 +70,7 @@ def axisymmetric_strain(basis: Basis) -> Array:
     """As :func:`plane_strain`, with the hoop's ``u_r/r``: Gauss points never lie on the axis, so that it is finite."""
     radius = np.asarray(basis.global_coordinates())[0]
     strain = plane_strain(basis)
-    strain[:, :, 2, 0::2] = _values(basis, radius.shape) / radius[:, :, None]
+    strain[:, :, 2, 0::2] = values(basis, radius.shape) / radius[:, :, None]
     return strain
 
 
@@ -81,7 +81,7 @@ def polar_strain(basis: Basis, inner_radius: float) -> Array:
     """
     place = np.asarray(basis.global_coordinates())
     radius = inner_radius - place[1]
-    turned, strain = _values(basis, radius.shape) / radius[:, :, None], plane_strain(basis)
+    turned, strain = values(basis, radius.shape) / radius[:, :, None], plane_strain(basis)
     for row, column in ((0, 0), (3, 1)):
         strain[:, :, row, column::2] *= (inner_radius / radius)[:, :, None]
     strain[:, :, 0, 1::2] = -turned
@@ -119,7 +119,7 @@ def plane_mass(basis: Basis) -> Array:
 
 
 def _mass(basis: Basis, weight: Array) -> Array:
-    value = _values(basis, weight.shape)
+    value = values(basis, weight.shape)
     scalar = np.einsum("eqi,eqj,eq->eij", value, value, weight, optimize=True)
     elements, functions, _ = scalar.shape
     local = np.zeros((elements, 2 * functions, 2 * functions))
@@ -142,7 +142,7 @@ def _assembled(basis: Basis, law: Array, strain: Array, weight: Array) -> sparse
     return scatter(local, vector_dofs(basis.element_dofs), 2 * basis.N)
 
 
-def _values(basis: Basis, shape: tuple[int, ...]) -> Array:
+def values(basis: Basis, shape: tuple[int, ...]) -> Array:
     """Of the scalar shape functions at the points of a ``shape``, (elements, points, functions)."""
     return np.stack([np.broadcast_to(np.asarray(one[0]), shape) for one in basis.basis], axis=-1)
 

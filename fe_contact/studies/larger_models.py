@@ -2,7 +2,8 @@
 
 An estimate of the model ledger is a formula. Where it names a key, the larger model can be asked instead: one coarse
 run with the key, one without, both by finite elements with their error bars, and the change of the peak force between
-them. Which effects a scene needs follows from the ledger alone, before anything is run.
+them. No key draws a section out to free ends: what these change is measured at rest, at the peak depth. Which effects a
+scene needs follows from the ledger alone, before anything is run.
 """
 
 from __future__ import annotations
@@ -11,24 +12,31 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 
+from fe_contact.budget.plan import scales
 from fe_contact.errors import faults_of
+from fe_contact.indentation import settings
 from fe_contact.progress import Progress, silent
 from fe_contact.reference import check, expected, fe, plan
 from fe_contact.settings import Given, tolerance_of
+from fe_contact.studies.finite_length import free_ends
 from lumped.errors import FeContactError
 from lumped.materials.energies.base import DEFAULT
+from lumped.result.model_ledger import FINITE_LENGTH
 from lumped.result.result import NO_KEY, LedgerEntry, Quantity, Result
+from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.schema import Table
 
 # The tolerance of both runs is a third of the effect that they are to show, within what waves reach and what is cheap.
 SHARE, FINEST, COARSEST = 3.0, 3e-3, 3e-2
+AT_DEPTH = "of the force at the peak depth, at small strains"
 
 
 @dataclass(frozen=True)
 class MeasuredEffect:
     """An effect that the ledger estimates, or its ``spread``, as two runs find it: ``change`` of the peak force and
-    its ``error``, all relative; None, and the ``reason``, where the larger model has no answer.
+    its ``error``, all relative; None, and the ``reason``, where the larger model has no answer. ``note``: of what else
+    it is the change; ``budget`` of its error, by cause, where it is told.
     """
 
     effect: str
@@ -38,6 +46,8 @@ class MeasuredEffect:
     error: float | None = None
     reason: str = ""
     spread: tuple[float, float] | None = None
+    note: str = ""
+    budget: Mapping[str, float] | None = None
 
     def __str__(self) -> str:
         if self.spread is not None:
@@ -46,9 +56,10 @@ class MeasuredEffect:
             estimate = "none" if self.estimate is None else f"{self.estimate:.2g}"
         if self.change is None or self.error is None:
             return f"{self.effect}: estimate {estimate} | not measured: {self.reason}"
-        by = "" if self.spread is None else f", by {DEFAULT} where the scene names no energy"
-        found = f"measured {self.change:+.2g} +- {self.error:.1g}{by}"
-        return f"{self.effect} ({self.setting}): estimate {estimate} | {found}"
+        by = "" if self.spread is None else f"by {DEFAULT} where the scene names no energy"
+        found = ", ".join(filter(None, (f"measured {self.change:+.2g} +- {self.error:.1g}", by, self.note)))
+        asked = f" ({self.setting})" if self.setting else ""
+        return f"{self.effect}{asked}: estimate {estimate} | {found}"
 
     def to_json(self) -> Table:
         """Its fields."""
@@ -83,9 +94,22 @@ def above(ledger: Sequence[LedgerEntry], tolerance: float) -> list[LedgerEntry]:
 
 
 def measure(scene: Scene, given: Given, progress: Progress = silent) -> tuple[MeasuredEffect, ...]:
-    """Every effect above the tolerance that has a larger model, by one coarse run each. Raises BadInput, NotReached."""
-    tolerance = tolerance_of(given)
-    effects = above(plan(scene, given).ledger, tolerance)
+    """Every effect above the tolerance that has a larger model, by one coarse run each, and what free ends change.
+
+    Raises BadInput, NotReached.
+    """
+    tolerance, ledger = tolerance_of(given), plan(scene, given).ledger
+    ended = [entry for entry in ledger if entry.effect == FINITE_LENGTH and entry.size > tolerance]
+    return (
+        *_by_runs(scene, given, above(ledger, tolerance), progress),
+        *(_at_rest(scene, one, progress) for one in ended),
+    )
+
+
+def _by_runs(
+    scene: Scene, given: Given, effects: Sequence[LedgerEntry], progress: Progress
+) -> tuple[MeasuredEffect, ...]:
+    """What has a key, each by two runs."""
     if not effects:
         return ()
     finest = min(_tolerance_of(entry) for entry in effects)
@@ -111,6 +135,18 @@ def _measured(scene: Scene, entry: LedgerEntry, own: Result) -> MeasuredEffect:
     except FeContactError as refused:
         return replace(without, reason=str(refused))
     return replace(without, change=change, error=error)
+
+
+def _at_rest(scene: Scene, entry: LedgerEntry, progress: Progress) -> MeasuredEffect:
+    """What free ends change at the depth that the plan expects."""
+    without = MeasuredEffect(entry.effect, "", entry.estimate, note=AT_DEPTH)
+    geometry = scene.geometry
+    indenter = Indenter(scene.profile, geometry.material, geometry.target, source=scene.source)
+    try:
+        found = free_ends(indenter, scales(scene, settings({}, scene.profile)).peak_depth, progress)
+    except FeContactError as refused:
+        return replace(without, reason=str(refused))
+    return replace(without, change=found.change, error=found.error, budget=found.budget)
 
 
 def change_of(own: Quantity, larger: Quantity) -> tuple[float, float]:

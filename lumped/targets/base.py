@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -24,6 +25,22 @@ NEEDS_DENSITY = "needs target.material.density"
 NO_SPEED = "a dashpot alone has no wave speed"
 MOVES = "{:.2g} of the striker's mass moves with it"
 LOST_FORCE = 0.3  # of the peak, relatively, over the share of the energy that is lost
+
+
+@dataclass(frozen=True)
+class FreeEnd:
+    """Where plane strain ends: softer by a ``share`` of the force there, which fades over a ``reach``, m.
+
+    As the pressure of a film does that flows out at an end: by exp(-y/reach) alone, by cosh between two of them.
+    """
+
+    share: float
+    reach: float
+
+    def softer(self, length: float) -> float:
+        """By what share of its force a body of a length, m, with two of them."""
+        halves = 0.5 * length / self.reach
+        return self.share * math.tanh(halves) / halves
 
 
 class Target(Record, ABC):
@@ -115,6 +132,13 @@ class Target(Record, ABC):
         if share is not None:
             return LOST_FORCE * share, f"radiates {share:.2g} of the kinetic energy"
         return None, NEEDS_DENSITY if material.density is None else NO_SPEED
+
+    def ends(self, shape: Shape, nu: float, contact_radius: float) -> FreeEnd | None:
+        """What an end of a body as long as a shape in plane strain gives way, under a contact this wide, m.
+
+        None where it is not known.
+        """
+        return None
 
     def waves_under(self, shape: Shape) -> bool:
         """Whether `model.inertia` can be true under a striker of this shape."""

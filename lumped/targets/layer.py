@@ -21,11 +21,12 @@ from lumped.materials.radiation import Pulse
 from lumped.schema.keys import Choice, Key, Number, Part
 from lumped.shapes.base import Shape
 from lumped.targets._strains import Pressed
-from lumped.targets.base import MOVES, Target
+from lumped.targets.base import MOVES, FreeEnd, Target
 
 # m_a/(density area thickness) of a thick layer: what nu = 0 has, and what a bonded and a sliding base add times s^2;
 # static fields by finite elements, within a tenth down to contacts a tenth as wide as the layer is thick.
 THICK, BONDED, SLIDING = 0.43, 0.2, 0.9
+TORSION = 0.63  # physics: by how much of its width a narrow rectangle's torsional stiffness counts as shorter
 BASE = Key(Choice(BASES), "what holds it on its foundation")
 FAR = 300.0  # beyond it nothing of 1/cosh is left
 NARROW = 1e-3  # below it x^2 is lost beside one, and digits with it
@@ -60,6 +61,24 @@ class Layer(Target):
     def pressed(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> Pressed:
         """On its own base."""
         return replace(super().pressed(shape, nu, depth, contact_radius), base=self.base)
+
+    def ends(self, shape: Shape, nu: float, contact_radius: float) -> FreeEnd:
+        """In plane stress, where the force for its depth is less by nu^2 if the base slides, or the contact is narrow.
+
+        Bonded under a wide one, from the confined modulus to E/(1 - nu^2): by (nu/(1 - nu))^2. There the end lets out
+        what the pressure squeezes, as far in as a film's pressure reaches (see :func:`_squeezed`), or, of a strip of
+        half-width a that no volume leaves, 0.63 a: its pressure is Saint-Venant's function of a bar under torsion.
+        Narrow contacts add what lies below them: half of a film's reach, half of two thicknesses at most. A layer that
+        slides is shifted by the stress along it over a strip of its edge, as a plane is in plane stress: 4 a/pi, and
+        more by the logarithm of the length, as under a line force.
+        """
+        a, half = contact_radius, 0.5 * self.thickness
+        if self.base == "sliding":
+            far = math.log1p(0.5 * shape.total / a) if a > 0.0 else 0.0
+            return FreeEnd(nu**2, half + 4.0 / math.pi * a * (1.0 + far))
+        narrow, wide = nu**2, (nu / (1.0 - nu)) ** 2
+        film = self.thickness * math.sqrt((1.0 - nu) / (1.5 * (1.0 - 2.0 * nu))) if nu < 0.5 else math.inf
+        return FreeEnd(narrow + (wide - narrow) * a / (a + half), min(film, min(0.5 * film, 2.0 * half) + TORSION * a))
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput also for a face whose flat part alone is wider than the layer's curve reaches."""

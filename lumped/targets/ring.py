@@ -16,7 +16,7 @@ from lumped.materials.radiation import Pulse
 from lumped.numbers import Array
 from lumped.schema.keys import Key, Part
 from lumped.shapes.base import SIZE, Shape
-from lumped.targets.base import Target
+from lumped.targets.base import FreeEnd, Target
 from lumped.targets.layer import Layer
 
 # Inner radius over thickness: the waves in the annulus' answer grow with it, and with them the time, to seconds here.
@@ -67,6 +67,10 @@ class Ring(Target):
     def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
         """A layer's, held by the outer surface."""
         return Layer(self.thickness, "bonded").inertia_left_out(shape, material, pulse)
+
+    def ends(self, shape: Shape, nu: float, contact_radius: float) -> FreeEnd:
+        """A layer's, held by the outer surface."""
+        return Layer(self.thickness, "bonded").ends(shape, nu, contact_radius)
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput for a striker that is no cylinder, or does not fit in."""

@@ -14,7 +14,7 @@ from scipy.integrate import quad, solve_ivp
 from lumped import LedgerEntry, Material, Model, Relaxation, Scene, Sphere, laws, simulate
 from lumped.errors import BadInput
 from lumped.materials.radiation import SINE_PULSE, line_coefficient, pulse_energy, radiation_coefficient
-from lumped.result.model_ledger import Peak, finite_strain, ledger_at_rest, model_ledger, of_dent
+from lumped.result.model_ledger import Peak, ends, finite_strain, ledger_at_rest, model_ledger, of_dent
 from lumped.result.result import ABOVE, NO_KEY, OPEN, UNKNOWN, WITHIN, good_to, sufficient
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
@@ -302,20 +302,36 @@ def test_a_fitted_series_is_charged_with_its_fit() -> None:
     assert entry(Scene.load("polymer-sphere"), effect).estimate == 0.0
 
 
-def test_a_long_rod_is_in_plane_strain() -> None:
-    """Ends count with the share of the length that they reach: twice as long, half as much; never more than nu^2."""
+def finite_length(name: str, changes: dict[str, object], radius: float = 1e-3) -> float | None:
+    """What the ledger says of free ends, under a contact of a radius, m."""
+    return ends(Indenter.load(name, changes).geometry, Peak(1.0, 1e-4, radius, 0.1)).estimate
 
-    def estimate(scene: Scene) -> list[float | None]:
-        ledger = model_ledger(scene, Peak(1.0, 1e-4, 1e-3, 0.1))
-        return [one.estimate for one in ledger if one.effect == "finite length"]
 
-    first, longer, short = (
-        estimate(Scene.load("rod-in-ring", {"striker.length": length})) for length in (0.03, 0.06, 0.001)
-    )
-    assert first == pytest.approx([0.45**2 * 2.0 * 0.003 / 0.03])
-    assert longer == pytest.approx([0.45**2 * 0.003 / 0.03])
-    assert short == pytest.approx([0.45**2])
-    assert estimate(Scene.load("polymer-sphere")) == []
+@pytest.mark.parametrize("name", ["rod-in-ring", "polymer-layer-line"])
+def test_a_long_body_is_in_plane_strain(name: str) -> None:
+    """Ends count with the share of the length that they reach: twice as long, half as much."""
+    first, longer = (finite_length(name, {"striker.length": length}) or 0.0 for length in (0.1, 0.2))
+    assert longer == pytest.approx(0.5 * first, rel=1e-6)
+    assert 1e-3 < first < 0.1
+
+
+@pytest.mark.parametrize("nu", [-0.3, 0.0, 0.3, 0.49])
+def test_a_slice_is_in_plane_stress(nu: float) -> None:
+    """E for E/(1 - nu^2) where the base slides or a contact is narrow; a wide one: that for the confined."""
+    short: dict[str, object] = {"striker.length": 1e-6, "target.material.nu": nu}
+    confined = (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+    sliding = short | {"target.base": "sliding"}
+    assert finite_length("polymer-layer-line", sliding) == pytest.approx(nu**2, abs=1e-6)
+    assert finite_length("polymer-layer-line", short, radius=0.0) == pytest.approx(nu**2, abs=1e-6)
+    wide = finite_length("polymer-layer-line", short, radius=10.0)
+    assert wide == pytest.approx(1.0 - 1.0 / ((1.0 - nu**2) * confined), abs=1e-3)
+
+
+def test_how_far_ends_reach_in_is_known_of_a_layer_or_a_ring_only() -> None:
+    assert finite_length("polymer-half-plane", {}) is None
+    for name in ("rod-in-ring", "polymer-sphere"):
+        effects = [one.effect for one in model_ledger(Scene.load(name), Peak(1.0, 1e-4, 1e-3, 0.1))]
+        assert ("finite length" in effects) is (name == "rod-in-ring")
 
 
 @pytest.mark.parametrize(
