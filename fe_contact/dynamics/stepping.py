@@ -112,7 +112,7 @@ class ImplicitStepper:
         return sparse.vstack([*(part.stiffness for part in body.parts), body.inertia, damping]).tocsr()
 
     @cached_property
-    def moved(self) -> tuple[Moved, ...]:
+    def moved(self) -> tuple[MovedBody, ...]:
         """Increments by surface forces; one solution serves all bodies that do not feel each other."""
         push, counts = self.body.pressing.push, [nodes.stop - nodes.start for _, nodes in self._bodies]
         forces = np.zeros((self.body.size, max(counts)))
@@ -120,7 +120,7 @@ class ImplicitStepper:
             forces[own, :count] = push[own, nodes].toarray()
         found = (1 - self.scheme.alpha_f) * self.solve(forces)
         return tuple(
-            Moved(own, nodes, found[own, :count]) for (own, nodes), count in zip(self._bodies, counts, strict=True)
+            MovedBody(own, nodes, found[own, :count]) for (own, nodes), count in zip(self._bodies, counts, strict=True)
         )
 
     @cached_property
@@ -186,7 +186,7 @@ class ImplicitStepper:
         )
 
 
-class Moved(NamedTuple):
+class MovedBody(NamedTuple):
     """Increments (n, m) of the degrees of freedom of one body, ``own``, by unit forces on the surface ``nodes``."""
 
     own: slice
