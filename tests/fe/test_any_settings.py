@@ -21,7 +21,7 @@ from fe_contact.settings import RANGES
 from fe_contact.steppers.steps import Strike
 from lumped import FeContactError, Relaxation, Result, Scene, laws, simulate
 
-IMPACTS, SEED, END_TO_END = 120, 20261124, 0.95
+IMPACTS, SEED, END_TO_END = 60, 20261124, 0.95
 TOLERANCES = (0.1, 0.03, 1e-2, 1e-3)
 NAMES = ("polymer-sphere", "polymer-cone", "polymer-half-plane", "rod-in-ring", "polymer-layer")
 POISSON = (0.0, 0.3, 0.45, 0.49, 0.499, 0.4999)

@@ -18,7 +18,7 @@ from lumped import BadInput, Scene, laws
 from lumped.errors import NotReached
 from lumped.result.result import UNITS
 
-CASES = 60
+CASES = 30
 ROUNDING = 1e-7  # of a number
 
 
