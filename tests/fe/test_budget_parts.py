@@ -145,7 +145,7 @@ def test_the_work_of_waves_is_that_of_all_runs_their_contacts_and_flights(numeri
 
     def run(size: int, flown: int, made: int, *steps: int) -> Any:
         contacts = [SimpleNamespace(march=SimpleNamespace(work=Work(count, 2 * count, 3 * count))) for count in steps]
-        return certify.WaveRun(Followed(contacts, None), size, flown, made)  # type: ignore[arg-type]
+        return certify.WaveRun(Followed(contacts, None), size, flown, made)
 
     nothing: Any = None
     runs = certify.WaveRuns(nothing, nothing, nothing, 1)
@@ -180,7 +180,7 @@ def test_what_one_contact_misses_is_said_without_its_number() -> None:
     found: Any = SimpleNamespace(numerics=SimpleNamespace(tolerance=1e-3), parts=(quantity,))
     for impacts, said in ((1, "tolerance"), (2, "contact 1: tolerance")):
         scene: Any = SimpleNamespace(motion=SimpleNamespace(impacts=impacts))
-        first, *_ = solved._missed(scene, SimpleNamespace(refused=""), found)  # type: ignore[arg-type]
+        first, *_ = solved._missed(scene, SimpleNamespace(refused=""), found)
         assert first == f"{said} 0.001 not reached: duration to 0.01"
 
 
@@ -229,7 +229,7 @@ def test_a_run_that_fails_tells_nothing_of_any_contact_and_is_not_run_again(nume
     assert runs.curve(1, numerics) is None
     assert runs.tried == 1
     alike: Any = runs
-    assert Runs.curve_at_corners(alike, 0, numerics) is None  # type: ignore[arg-type]
+    assert Runs.curve_at_corners(alike, 0, numerics) is None
 
 
 def test_a_touch_is_as_uncertain_as_contact_and_flight_before_it(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -143,6 +143,7 @@ def test_an_implicit_scheme_damps_the_fastest_oscillations_by_rho_as_far_as_it_l
     radius = np.abs(np.linalg.eigvals(np.linalg.solve(new, old))).max()
     # a triple eigenvalue splits by the cube root of rounding
     assert radius == pytest.approx(FASTEST[name](rho), abs=2e-4)
+    assert ORDER[name] == 1 or gamma == pytest.approx(0.5 - alpha_m + alpha_f), "order two"
 
 
 def test_central_difference_is_stable_up_to_two_over_omega() -> None:

@@ -537,6 +537,22 @@ def test_bars_of_an_impact_hold_what_its_settings_err_by_which_are_refined(
     assert {setting} <= changed <= {setting, "steps"}
 
 
+@pytest.mark.parametrize("cause", ["mesh", "penalty", "far_field"])
+def test_bars_of_an_indentation_hold_what_its_settings_err_by(cause: str, known: Callable[..., None]) -> None:
+    """A force that errs by a share everywhere, and by no more of the other causes."""
+
+    def off(numerics: Numerics, cut: bool) -> float:
+        errors = {"mesh": 0.3 / numerics.elements_per_contact, "penalty": 40.0 / numerics.penalty}
+        return (errors | {"far_field": (8.0 if cut else 2.0) / numerics.far_radius**2})[cause]
+
+    known(off)
+    found = pressed([2.0 * yield_depth(0.3), 5.0 * yield_depth(0.3)], COARSE)
+    wrong = np.abs(found.force - 4.0 / 3.0 * modulus(0.3) * math.sqrt(RADIUS) * found.depth**1.5)
+    assert np.all(wrong <= found.force_error)
+    assert np.all(found.force_error <= 2.0 * wrong)
+    assert found.budget[cause] * found.force == pytest.approx(found.force_error, rel=1e-6)
+
+
 def test_a_motion_that_ends_amid_the_contact_is_refused(known: Callable[..., None]) -> None:
     known()
     scene = Scene.from_dict(tables(mass=MASS, velocity=SLOW))
