@@ -382,6 +382,14 @@ def test_a_later_touch_is_extrapolated_as_all_else_and_the_account_by_the_speed_
     assert found.end_spread == pytest.approx(1.0 + (1.0 + 2.0**order) / (2.0**order - 1.0))
 
 
+def test_where_no_order_shows_the_band_holds_the_whole_change_and_more_where_the_setting_deserves_less_trust() -> None:
+    """By its factor, or by that of order one, whichever is more."""
+    other, time = made_up(STEPS, lambda share: 1e-3 * share), np.linspace(0.1, 0.8, 50)
+    once = Variation(TRUTH, other, 1.0).force(time)
+    for trusted, worth in ((3.0, 3.0), (1.0, 1.25)):
+        np.testing.assert_allclose(Variation(TRUTH, other, trusted, unresolved=np.inf).force(time), worth * once)
+
+
 @pytest.mark.parametrize("rises", [True, False])
 def test_a_force_that_is_largest_at_either_end_has_places_on_both_sides_of_its_peak(rises: bool) -> None:
     """Cut off as it rises, or fallen from the touch on."""
