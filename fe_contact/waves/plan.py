@@ -30,7 +30,8 @@ FINER = 2.0  # times as many at the surface where dashpots carry much: pressure 
 PENALTY = 120.0  # default: the contact penalty, before stiffness and dashpots raise it
 STIFF = 16.0  # times as much there
 MUCH = 0.5  # share of dashpots in the stiffness until the force peaks, below which FINER and STIFF count in part
-STEPS = 208  # along a contact, shorter ones about an early peak
+STEPS = 256  # along a contact, shorter ones about an early peak
+SMOOTH_STEPS = 208  # the same where no wave comes back to the contact
 LOOSER = 0.75  # beyond the default tolerance elements and steps go as it to this power, as `fe-contact tradeoff` has it
 FEWEST = {"elements": 2.5, "steps": 64}  # safety: halved, they still show an order
 TRAVEL = 0.5  # of the contact time: an echo from the far radius returns after the contact
@@ -64,15 +65,17 @@ def placed(
     far_radius: float,
     wide: float = 1.0,
     stiff: float = 1.0,
+    usual_steps: float = STEPS,
 ) -> Plan:
     """What ``given`` leaves open for an impact of these scales, on a mesh that ends at ``far_radius``, contact radii.
 
-    ``wide``: the contact radius to be ready for over the estimated one; ``stiff``: the body over a half-space under it.
+    ``wide``: the contact radius to be ready for over the estimated one; ``stiff``: the body over a half-space under it;
+    ``usual_steps``: along a contact at the default tolerance.
     """
     tolerance, duration = float(given.get("tolerance", DEFAULT_TOLERANCE)), contact_time(scene, scales)
     finer, looser = max(1.0, DEFAULT_TOLERANCE / tolerance), min(1.0, DEFAULT_TOLERANCE / tolerance)
     elements = max(ELEMENTS * looser**LOOSER, FEWEST["elements"])
-    steps = max(STEPS * looser**LOOSER, FEWEST["steps"])
+    steps = max(usual_steps * looser**LOOSER, FEWEST["steps"])
     peak_share = min(max(scales.peak_time / duration, SOONEST_PEAK), 1.0)
     viscous = min(viscous_share(scene.contact_modulus, peak_share * duration) / MUCH, 1.0)
     chosen = {

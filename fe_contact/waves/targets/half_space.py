@@ -27,7 +27,7 @@ from fe_contact.settings import RANGES, Given, WaveNumerics
 from fe_contact.waves.balls import Ball, flying
 from fe_contact.waves.impact import choices_of
 from fe_contact.waves.moving import BEYOND, SMALLEST, Flying, Moving, UnitBody, WaveSide
-from fe_contact.waves.plan import SPREAD, SPRINGS, TRAVEL, contact_time, placed
+from fe_contact.waves.plan import SMOOTH_STEPS, SPREAD, SPRINGS, TRAVEL, contact_time, placed
 from fe_contact.waves.targets.base import WaveTarget, changing, too_fast
 from lumped.errors import BadInput, Fault
 from lumped.laws import mdr
@@ -61,7 +61,8 @@ def plan(scene: Scene, given: Given) -> Plan:
     check_compressible(scene)
     scales = mdr.estimate(scene, SPRINGS)
     longest = _slowest(scene, scales.restitution) * contact_time(scene, scales)
-    return placed(scene, given, scales, _far_radius(scene, scales.contact_radius, longest))
+    far_radius = _far_radius(scene, scales.contact_radius, longest)
+    return placed(scene, given, scales, far_radius, usual_steps=SMOOTH_STEPS)
 
 
 def _slowest(scene: Scene, restitution: float | None) -> float:
