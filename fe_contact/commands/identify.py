@@ -133,9 +133,7 @@ def summary(found: Identified) -> list[str]:
         lines += [f"{name} alone: {key.rpartition('.')[2]} {shown(one)}" for key, one in alone.parameters.items()]
     noises = ", ".join(f"{100.0 * curve.deviation / curve.peak:.2g} %" for curve in found.curves)
     touches = ", ".join(f"{curve.touch:.6g}" for curve in found.curves)
-    test = f"Ljung-Box, p = {found.whiteness.probability:.2g}"
-    verdict = "what is left is noise" if found.adequate else "the law does not explain the curves"
-    return [*lines, f"touch at {touches} s, noise {noises} of the peak", f"{verdict} ({test})"]
+    return [*lines, f"touch at {touches} s, noise {noises} of the peak", found.verdict]
 
 
 def _of_reference(found: Identified) -> Iterator[str]:

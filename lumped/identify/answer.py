@@ -111,11 +111,15 @@ def _warnings(parameters: Mapping[str, Interval], valleys: Sequence[ToldValley])
 
 
 def _of_residuals(tested: Whiteness, widened: float, curves: Sequence[FittedCurve]) -> Iterator[str]:
-    if not tested.noise:
+    if tested.of_the_law:
         worst = max(curves, key=lambda curve: curve.error)
         told = f"what is left is no noise (Ljung-Box, p = {tested.probability:.1g}): the model errs by about"
         cause = f"{told} {100.0 * worst.error:.2g} % of the peak, or the noise is coloured (--corner)"
         yield f"{cause}; the intervals are {widened:.2g} times as wide, and not to be trusted"
+    elif not tested.noise:
+        told = f"neighbouring rows of what is left are opposed (Ljung-Box, p = {tested.probability:.1g})"
+        cause = "no law's error is so, but noise of less memory than it was taken for"
+        yield f"{told}: {cause}; the intervals are not to be trusted; cure: --corner of the instrument, or none"
 
 
 def _of_the_sample(posterior: Posterior | None, valleys: Sequence[ToldValley]) -> Iterator[str]:

@@ -183,6 +183,16 @@ class Identified:
         """Whether what is left of the curves is noise."""
         return self.whiteness.noise
 
+    @property
+    def verdict(self) -> str:
+        """What is left of the curves, in words, with the test that says so."""
+        test = f"(Ljung-Box, p = {self.whiteness.probability:.2g})"
+        if self.adequate:
+            return f"what is left is noise {test}"
+        if self.whiteness.of_the_law:
+            return f"the law does not explain the curves {test}"
+        return f"the noise is not of the colour it was taken for {test}"
+
     def to_json(self) -> Table:
         """The content of identified.json."""
         test = {"test": "Ljung-Box", **asdict(self.whiteness)}

@@ -433,6 +433,20 @@ def test_the_corner_of_a_low_pass_stands_in_for_the_silence() -> None:
     assert told.curves[0].deviation == pytest.approx(0.01 * force.max(), rel=0.15)
 
 
+def test_a_corner_that_the_record_does_not_have_is_no_noise() -> None:
+    """White noise whitened once more: neighbours are opposed, which is no law's error and no noise either."""
+    rng = np.random.default_rng(SEED)
+    table = scene(STRIKERS[0], {"law": "elastic", "E": 1e6})
+    time, force = history_by_springs(table, {})
+    curve = curve_of(rng, time, force, 0.02 * rng.normal(size=4 * ROWS))
+    corner = 0.1 / (curve.time[1] - curve.time[0])
+    found = identify({"curve": curve}, table, ["target.material.E"], corner=corner)
+    assert not found.adequate
+    assert not found.whiteness.of_the_law
+    assert found.verdict.startswith("the noise is not of the colour it was taken for (Ljung-Box, p = ")
+    assert any("opposed" in one and "cure: --corner of the instrument, or none" in one for one in found.warnings)
+
+
 def test_colour_and_whiteness_of_known_series() -> None:
     rng = np.random.default_rng(SEED)
     white = rng.normal(size=4000)
