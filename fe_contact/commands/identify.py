@@ -29,7 +29,7 @@ LEAST_DRAWS, MOST_DRAWS = 100, 1_000_000  # the ends of a band need some; work
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Read, judge, identify, write, report; 0, or 3 where no impact came near the curves."""
+    """Read, judge, identify, write, report; 0, or 3 where no impact came near the curves, or a key was not found."""
     from fe_contact.studies.identify_chart import plot_identified
     from lumped.identify import RECORD, identify
     from lumped.result.curve_file import read_curve
@@ -69,7 +69,7 @@ def execute(args: argparse.Namespace) -> int:
     base.say(args, content, lines, f"{name}: identified from {len(curves)} curve{'s' if len(curves) > 1 else ''}")
     for warning in (*warnings, *found.warnings):
         base.complain(warning)
-    return base.DONE
+    return base.NOT_REACHED if found.beyond else base.DONE
 
 
 def _curves(texts: list[str]) -> dict[str, dict[str, object]]:
