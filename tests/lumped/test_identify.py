@@ -19,6 +19,7 @@ from scipy.special import stdtrit
 
 from lumped import BadInput, Scene, identify, laws, simulate
 from lumped.fit.noise import colour_of, memory, whitened, whiteness
+from lumped.identify import keys as free_keys
 from lumped.identify.ensemble import Linearized, draws_of
 from lumped.identify.histories import Impact
 from lumped.identify.keys import SceneFile
@@ -502,7 +503,7 @@ def test_a_spring_that_the_curves_do_not_need_is_named() -> None:
 
 def test_a_search_that_ends_before_the_likeliest_value_did_not_converge(monkeypatch: pytest.MonkeyPatch) -> None:
     """A mass guessed farther off than a search looks."""
-    monkeypatch.setattr("lumped.identify.keys.REACH", 10.0)
+    monkeypatch.setattr(free_keys, "REACH", 10.0)
     rng = np.random.default_rng(SEED)
     table = scene(STRIKERS[0], {"law": "elastic", "E": 1e6})
     curve = curve_of(rng, *history_by_springs(table, {}), 0.005 * rng.normal(size=ROWS))
