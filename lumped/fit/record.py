@@ -35,7 +35,8 @@ class Estimate:
         if self.low is None and self.high is None:
             return f"{self.value:.6g} {self.unit}, interval unknown".replace(" ,", ",")
         low, high = ("open" if end is None else f"{end:.6g}" for end in (self.low, self.high))
-        return f"{self.value:.6g} ({low} to {high}) {self.unit}".rstrip()
+        between = "" if low == high else f" ({low} to {high})"  # what nothing free changes has none
+        return f"{self.value:.6g}{between} {self.unit}".rstrip()
 
 
 @dataclass(frozen=True, eq=False)

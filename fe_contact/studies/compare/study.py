@@ -212,7 +212,8 @@ def verdicts(comparison: Comparison) -> tuple[str, ...]:
     """What :func:`judged` says; then the laws that gave no answer, those of one reason together."""
     reasons: dict[str, list[str]] = {}
     for name, reason in comparison.refused.items():
-        reasons.setdefault(reason.replace(name, "it"), []).append(name)
+        alike = reason.replace(f"law.name={name}", "law.name=NAME").replace(name, "it")
+        reasons.setdefault(alike, []).append(name)
     refused = [f"{', '.join(names)}: {reason}" for reason, names in reasons.items()]
     return (*judged(comparison), *refused)
 
