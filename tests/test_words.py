@@ -85,9 +85,8 @@ def test_a_law_says_what_it_is_not_for(law: str, said: str) -> None:
 @pytest.mark.parametrize("law", ["kelvin", "hunt_crossley", "hertzdamp", "impact_bilinear"])
 def test_a_law_of_the_half_space_says_how_it_is_asked_elsewhere(law: str, given: dict[str, object]) -> None:
     """Stiffness and damping of its own, by the keys that the refusal names."""
-    scene = Scene.load("polymer-layer", {"law.name": law, **given})
     with pytest.raises(BadInput, match=f"{law} is not for this layer, but for the half-space, or with its own") as said:
-        laws.get(law).of(scene)
+        Scene.load("polymer-layer", {"law.name": law, **given})
     named = dict.fromkeys(re.findall(r"--set (law\.[ke])=", str(said.value)), 0.8)
     assert list(named) == ["law.k", "law.e"]
     own = Scene.load("polymer-layer", {"law.name": law, **named, "law.k": 2e5})
