@@ -73,7 +73,7 @@ class Fit:
         lines = [f"{self.law}: normalized error {100.0 * self.normalized_error:.3g} % on {self.points} points{held}"]
         lines += [f"{name:{WIDTH}s} {estimate}" for name, estimate in self.parameters.items()]
         lines += [f"{name:{WIDTH}s} {value:.6g} held" for name, value in self.held.items()]
-        return "\n  ".join([*lines, f"force at {self.depth:.4g} m {self.force_at_depth}"])
+        return "\n  ".join([*lines, f"force at half depth, {self.depth:.4g} m: {self.force_at_depth}"])
 
     @property
     def values(self) -> dict[str, float]:
