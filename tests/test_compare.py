@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
@@ -17,7 +18,7 @@ from fe_contact.cli import main
 from fe_contact.commands.compare import law_names
 from fe_contact.reference import Solved, result_of, solve
 from fe_contact.studies.compare import study
-from fe_contact.studies.compare.chart import plot_comparison
+from fe_contact.studies.compare.chart import _time_axis, plot_comparison
 from fe_contact.studies.compare.deviations import Told, rebound_steps
 from fe_contact.studies.compare.law_pressure import LawPressure
 from fe_contact.studies.compare.study import WITHIN, Comparison, Judgement, compare, verdicts
@@ -26,6 +27,7 @@ from lumped.errors import BadInput
 from lumped.result.result import Result
 from lumped.result.score import Curve as Measured
 from lumped.scene.scene import Scene
+from lumped.scene.tables import LawChoice
 
 MATERIALS: dict[str, dict[str, Any]] = {
     "sls": {},
@@ -128,13 +130,30 @@ def test_the_reference_measured_is_within_its_own_bar(polymer: tuple[Solved, Res
     comparison = compare(*polymer, (), Measured(history.time, history.force))
     assert comparison.judgements[0].score_percent == pytest.approx(0.0, abs=1e-9)
     assert comparison.judgements[0].errors["restitution"] is None
+    assert verdicts(comparison)[0] == "the reference agrees with the measured curve within its error bar"
 
 
-@pytest.mark.parametrize(("factor", "phrase"), [(1.05, "peak force 5 % too high"), (0.95, "peak force 5 % too low")])
+def test_a_law_that_ends_far_later_leaves_the_reference_readable(polymer: tuple[Solved, Result]) -> None:
+    """A spring far too soft."""
+    solved, result = polymer
+    soft = LawChoice("kelvin", {"k": 1.0, "xi": 0.1})
+    comparison = compare(solved, replace(result, scene=replace(result.scene, law=soft)), ("kelvin",))
+    assert ", ends far later" in verdicts(comparison)[0]
+    figure, axes = plt.subplots()
+    _, span = _time_axis(axes, comparison)
+    assert span == pytest.approx(3.0 * result.history.time[-1])
+    assert "cut at 3 contact times" in axes.get_xlabel()
+    plt.close(figure)
+
+
+@pytest.mark.parametrize(
+    ("factor", "phrase"), [(1.05, "the measured peak is 5 % higher"), (0.95, "the measured peak is 5 % lower")]
+)
 def test_a_scaled_measurement_is_called_so(polymer: tuple[Solved, Result], factor: float, phrase: str) -> None:
     history = polymer[1].history
     comparison = compare(*polymer, (), Measured(history.time, factor * history.force))
     assert comparison.judgements[0].score_percent == pytest.approx(5.0, rel=1e-6)
+    assert verdicts(comparison)[0].startswith("the reference differs from the measured curve by up to 5 % of the peak")
     assert phrase in verdicts(comparison)[0]
 
 

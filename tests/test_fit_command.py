@@ -167,7 +167,22 @@ def test_all_laws_are_ranked_the_true_one_first(
 
 def test_all_laws_have_their_own_parameters(curve: Path, body: Path, refused: Callable[..., list[str]]) -> None:
     faults = refused("fit", str(curve), "--law", "all", "--scene", str(body), "--free", "k", "--peak")
-    assert any("--peak: with --law all each law has its own; accepted: --free touch, --fix" in one for one in faults)
+    said = "--peak: with --law all each law has its own; accepted: --free touch, --fix; cure: choose one law for --peak"
+    assert any(said in one for one in faults)
+
+
+def test_what_is_held_without_being_asked_is_said(
+    body: Path, curve: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """And the force that nothing free changes has no interval."""
+    command = ["fit", str(curve), "--law", "jankowski", "--scene", str(body), "--out", str(tmp_path / "out")]
+    own = ["--set", "law.name=jankowski", "--set", "law.k=1e7", "--set", "law.xi=0.2"]
+    assert main([*command, *own, "--free", "touch"]) == 0
+    said = capsys.readouterr()
+    assert "k, xi held as the scene has them; to find them too: --free touch,k,xi" in said.err
+    assert " to " not in said.out.partition("force at")[2].partition(" N")[0]
+    assert main([*command, "--free", "touch,k", "--fix", "xi=0.2"]) == 0
+    assert "held as the scene" not in capsys.readouterr().err
 
 
 @pytest.mark.family

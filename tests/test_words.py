@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 from pathlib import Path
 
@@ -11,7 +12,7 @@ from fe_contact.cli import main, parser
 from fe_contact.commands import COMMANDS
 from fe_contact.commands.base import GROUPS
 from fe_contact.studies.compare.study import _reason
-from lumped import FeContactError, LedgerEntry, Quantity, Scene, laws, simulate
+from lumped import BadInput, FeContactError, LedgerEntry, Quantity, Scene, laws, simulate
 from lumped.result.model_ledger import Peak, model_ledger
 from lumped.schema.files import SCENES
 
@@ -78,6 +79,18 @@ def test_a_law_says_what_it_is_not_for(law: str, said: str) -> None:
         simulate(laws.get(law).of(scene), scene)
     assert _reason(law, refused.value).startswith("not for this ")
     assert said in _reason(law, refused.value)
+
+
+@pytest.mark.parametrize("given", [{}, {"law.k": 2e5}])
+@pytest.mark.parametrize("law", ["kelvin", "hunt_crossley", "hertzdamp", "impact_bilinear"])
+def test_a_law_of_the_half_space_says_how_it_is_asked_elsewhere(law: str, given: dict[str, object]) -> None:
+    """Stiffness and damping of its own, by the keys that the refusal names."""
+    with pytest.raises(BadInput, match=f"{law} is not for this layer, but for the half-space, or with its own") as said:
+        Scene.load("polymer-layer", {"law.name": law, **given})
+    named = dict.fromkeys(re.findall(r"--set (law\.[ke])=", str(said.value)), 0.8)
+    assert list(named) == ["law.k", "law.e"]
+    own = Scene.load("polymer-layer", {"law.name": law, **named, "law.k": 2e5})
+    assert simulate(laws.get(law).of(own), own).converged
 
 
 def test_scenes_say_what_each_is_for(capsys: pytest.CaptureFixture[str]) -> None:

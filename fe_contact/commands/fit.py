@@ -150,8 +150,8 @@ def _check_ranking(args: argparse.Namespace) -> None:
     given = {"--bounds": args.bounds, "--peak": args.peak, "--opensees": args.opensees}
     chosen = [name for name, value in given.items() if value]
     if chosen or args.free not in (None, TOUCH):
-        reason = f"with --law {EVERY} each law has its own; accepted: --free {TOUCH}, --fix"
-        raise BadInput(Fault(name, "", reason) for name in chosen or ["--free"])
+        reason = f"with --law {EVERY} each law has its own; accepted: --free {TOUCH}, --fix; cure: choose one law"
+        raise BadInput(Fault(name, "", f"{reason} for {name}") for name in chosen or ["--free"])
 
 
 def _pairs(text: str, option: str) -> Iterator[tuple[str, str]]:
@@ -178,7 +178,7 @@ MEMBER = base.Command(
         base.option("curve", type=Path, metavar="CURVE.csv", help="measured force: time_s,force_N"),
         base.option("--law", required=True, metavar="NAME", help="a lumped law (fe-contact laws), or all, ranked"),
         base.option("--scene", required=True, help="scene (file or packaged name) with mass, velocity, geometry"),
-        base.option("--free", metavar="a,b,...", help="default: stiffness and damping; touch: when the bodies meet, s"),
+        base.option("--free", metavar="a,b,...", help="default: stiffness and damping; also touch, s; others are held"),
         base.option("--fix", default="", metavar="a=v,...", help="parameters held at a value"),
         base.option("--bounds", default="", metavar="a=low:high,...", help="bounds of free parameters"),
         base.option("--peak", action="store_true", help="least error at equal peak force, (26)"),

@@ -29,7 +29,7 @@ LEAST_DRAWS, MOST_DRAWS = 100, 1_000_000  # the ends of a band need some; work
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Read, judge, identify, write, report; 0, or 3 where no impact came near the curves."""
+    """Read, judge, identify, write, report; 0, or 3 where no impact came near the curves, or a key was not found."""
     from fe_contact.studies.identify_chart import plot_identified
     from lumped.identify import RECORD, identify
     from lumped.result.curve_file import read_curve
@@ -69,7 +69,7 @@ def execute(args: argparse.Namespace) -> int:
     base.say(args, content, lines, f"{name}: identified from {len(curves)} curve{'s' if len(curves) > 1 else ''}")
     for warning in (*warnings, *found.warnings):
         base.complain(warning)
-    return base.DONE
+    return base.NOT_REACHED if found.beyond else base.DONE
 
 
 def _curves(texts: list[str]) -> dict[str, dict[str, object]]:
@@ -133,9 +133,7 @@ def summary(found: Identified) -> list[str]:
         lines += [f"{name} alone: {key.rpartition('.')[2]} {shown(one)}" for key, one in alone.parameters.items()]
     noises = ", ".join(f"{100.0 * curve.deviation / curve.peak:.2g} %" for curve in found.curves)
     touches = ", ".join(f"{curve.touch:.6g}" for curve in found.curves)
-    test = f"Ljung-Box, p = {found.whiteness.probability:.2g}"
-    verdict = "what is left is noise" if found.adequate else "the law does not explain the curves"
-    return [*lines, f"touch at {touches} s, noise {noises} of the peak", f"{verdict} ({test})"]
+    return [*lines, f"touch at {touches} s, noise {noises} of the peak", found.verdict]
 
 
 def _of_reference(found: Identified) -> Iterator[str]:

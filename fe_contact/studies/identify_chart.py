@@ -46,11 +46,10 @@ def plot_identified(found: Identified, where: Path) -> tuple[Path, Path]:
 
 
 def _verdict(found: Identified) -> str:
-    test = f"Ljung-Box, p = {found.whiteness.probability:.2g}"
-    if found.adequate:
-        return f"what is left is noise ({test})"
+    if not found.whiteness.of_the_law:
+        return found.verdict
     error = 100.0 * max(curve.error for curve in found.curves)
-    return f"the law does not explain the curves: {error:.2g} % of the peak is left beside the noise ({test})"
+    return f"{found.verdict}: {error:.2g} % of the peak is left beside the noise"
 
 
 def _shown(one: Interval) -> str:

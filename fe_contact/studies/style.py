@@ -91,11 +91,14 @@ def save(figure: Figure, where: Path, name: str) -> tuple[Path, Path]:
 
 
 def prefixed(largest: float, unit: str) -> tuple[float, str]:
-    """Factor and unit with which the largest value of an axis reads as a number from 1 to 1000."""
-    power = 0
+    """Factor and unit with which the largest value of an axis reads as a number from 1 to 1000.
+
+    Pascals are not divided: a milli- would be read as a mega-, which is what moduli have.
+    """
+    power, least = 0, 0 if unit.startswith("Pa") else -12
     while largest * 10.0**-power >= 1000.0 and power < 12:
         power += 3
-    while 0.0 < largest * 10.0**-power < 1.0 and power > -12:
+    while 0.0 < largest * 10.0**-power < 1.0 and power > least:
         power -= 3
     return 10.0**-power, PREFIXES[power] + unit
 

@@ -285,7 +285,10 @@ def _parameter_warnings(
         if name in unfelt:
             yield f"{name} does not change the force around {estimate.value:.6g}: the curve does not tell it"
         elif _at_bound(problem, name, estimate.value, guess):
-            yield f"{name} is at its bound, {estimate.value:.6g}: it has no interval"
+            place = f"{estimate.value:.6g} {estimate.unit}".rstrip()
+            own = name in problem.space.bounds
+            ran = "is at its bound" if own else "ran into the end of its search"
+            yield f"{name} {ran}, {place}: it has no interval{'' if own else ', and the curve does not tell it'}"
         elif estimate.low is None and estimate.high is None:
             yield f"{name} has no interval: the curve hardly tells it"
         elif side := open_side(estimate.low, estimate.high):

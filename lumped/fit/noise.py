@@ -77,8 +77,13 @@ class Whiteness:
 
     @property
     def noise(self) -> bool:
-        """Whether the residuals may be noise: what a law leaves is smooth, and neighbours are alike in it."""
-        return self.probability >= REJECTED or self.neighbours <= 0.0
+        """Whether the residuals may be noise of the colour that it was taken for."""
+        return self.probability >= REJECTED
+
+    @property
+    def of_the_law(self) -> bool:
+        """Whether a law leaves more than noise: that is smooth. Of neighbours that are opposed the colour is wrong."""
+        return not self.noise and self.neighbours > 0.0
 
 
 def whiteness(residuals: Sequence[Array]) -> Whiteness:

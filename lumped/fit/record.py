@@ -35,7 +35,8 @@ class Estimate:
         if self.low is None and self.high is None:
             return f"{self.value:.6g} {self.unit}, interval unknown".replace(" ,", ",")
         low, high = ("open" if end is None else f"{end:.6g}" for end in (self.low, self.high))
-        return f"{self.value:.6g} ({low} to {high}) {self.unit}".rstrip()
+        between = "" if low == high else f" ({low} to {high})"  # what nothing free changes has none
+        return f"{self.value:.6g}{between} {self.unit}".rstrip()
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +73,7 @@ class Fit:
         lines = [f"{self.law}: normalized error {100.0 * self.normalized_error:.3g} % on {self.points} points{held}"]
         lines += [f"{name:{WIDTH}s} {estimate}" for name, estimate in self.parameters.items()]
         lines += [f"{name:{WIDTH}s} {value:.6g} held" for name, value in self.held.items()]
-        return "\n  ".join([*lines, f"force at {self.depth:.4g} m {self.force_at_depth}"])
+        return "\n  ".join([*lines, f"force at half depth, {self.depth:.4g} m: {self.force_at_depth}"])
 
     @property
     def values(self) -> dict[str, float]:

@@ -29,6 +29,7 @@ from lumped.fit.space import (
     damping_names,
     own_keys,
     own_values,
+    quietly_held,
     space_of,
     three_parameters,
 )
@@ -97,6 +98,7 @@ def search(
     fitted = space.scene_at(found.values)
     result = simulate(laws.get(law).of(fitted), fitted, RESULT_TOLERANCE)
     history = delayed(result.history, space.touch(found.values))
+    failed = () if result.converged else (result.message,)
     return Fit(
         law=law,
         scene=fitted,
@@ -111,7 +113,7 @@ def search(
         force_at_depth=certainty.force_at_depth,
         peak_held=peak,
         points=measured.points,
-        warnings=(*_thinned(measured), *certainty.warnings, *(() if result.converged else (result.message,))),
+        warnings=(*_thinned(measured), *_held(space), *certainty.warnings, *failed),
     )
 
 
@@ -119,6 +121,15 @@ def _thinned(measured: Measured) -> tuple[str, ...]:
     """What to say where the points are fewer than the rows."""
     said = f"fitted to {measured.points} points, each the mean of {measured.together} neighbouring rows"
     return (said,) if measured.together > 1 else ()
+
+
+def _held(space: Space) -> tuple[str, ...]:
+    """What to say where stiffness or damping are the scene's, which nobody has asked for."""
+    names = quietly_held(space)
+    if not names:
+        return ()
+    cure = f"to find {'them' if len(names) > 1 else 'it'} too: --free {','.join((*space.free, *names))}"
+    return (f"{', '.join(names)} held as the scene has {'them' if len(names) > 1 else 'it'}; {cure}",)
 
 
 def delayed(history: History, touch: float) -> History:

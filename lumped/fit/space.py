@@ -116,6 +116,16 @@ def default_free(law: str, scene: Scene, fixed: Mapping[str, float]) -> tuple[st
     return tuple(name for name in names if name not in fixed)
 
 
+def quietly_held(space: Space) -> tuple[str, ...]:
+    """What would be free by default, and is neither free nor fixed: the scene's own values hold it.
+
+    Of a material those alone of a fit that has no number free: it stands by one set of names or another.
+    """
+    default = default_free(space.law, space.scene, {**space.held, **dict.fromkeys(space.free, 0.0)})
+    own = own_keys(space.law)
+    return tuple(name for name in default if name in own or space.free.keys() == {TOUCH})
+
+
 def _said(scene: Scene, law: str, chosen: Mapping[str, float]) -> Table:
     """What the scene's own [law] says, without another name of a damping that is chosen here.
 

@@ -18,6 +18,8 @@ from lumped.identify.record import ByReference, FittedCurve, Identified, Interva
 from lumped.numbers import Array
 
 CORRELATED = 0.95  # named in a warning
+NONE = "none"
+AT_END = 1e-3  # safety: of a place; a descent that a limit stops ends a little before it
 ENOUGH = 100  # independent draws: five of them lie beyond either end of a band
 
 
@@ -40,14 +42,17 @@ def answer(
     parameters = {name: hull([one.parameters[name] for one in told]) for name in told[0].parameters}
     curves = tuple(_fitted(histories, sought, names, bands or [np.zeros(0)] * len(names)))
     table = histories.file.with_values(histories.keys, sought[: len(histories.keys)])
+    ends = dict(_ends(histories, valleys[0]))
     warnings = (
+        *(_of_end(name, end, parameters[name]) for name, end in ends.items()),
         *_warnings(parameters, told),
         *_of_residuals(tested, widened, curves),
         *_of_the_sample(posterior, told),
         *_of_the_reference(by_reference, parameters),
     )
     source = histories.file.source
-    return Identified(source, parameters, told, curves, tested, widened, table, warnings, posterior, by_reference)
+    found = (source, parameters, told, curves, tested, widened, table, warnings, posterior, by_reference)
+    return Identified(*found, beyond=tuple(name for name, end in ends.items() if end != NONE))
 
 
 def _apart(
@@ -91,6 +96,23 @@ def _noise_and_error(left: Array, pressed: NDArray[np.bool_], colour: Array) -> 
     return math.sqrt(min(noise, power)), math.sqrt(max(power - noise, 0.0))
 
 
+def _ends(histories: Histories, valley: Valley) -> Iterator[tuple[str, str]]:
+    """The keys that ran into the end of their search, and which end: of what a key accepts, none, or the search's."""
+    for key, place, low, high in zip(histories.keys, valley.sought, *valley.limits, strict=False):
+        if place - low <= AT_END:
+            yield key.name, NONE if key.at(low) <= key.kind.low * (1.0 + AT_END) else "lower"
+        elif high - place <= AT_END:
+            yield key.name, "upper"
+
+
+def _of_end(name: str, end: str, one: Interval) -> str:
+    if end == NONE:
+        told = f"{name} ran into the end of its search, {one.value:.3g} {one.unit}".rstrip()
+        return f"{told}: the curves do not need it; cure: a law without it, or hold it"
+    told = f"{name} ran into the {end} end of its search, {one.value:.3g} {one.unit}".rstrip()
+    return f"{told}: it is not found; cure: hold it, or another first guess in the scene file"
+
+
 def _warnings(parameters: Mapping[str, Interval], valleys: Sequence[ToldValley]) -> Iterator[str]:
     names, correlation = list(parameters), valleys[0].correlation
     for name, one in parameters.items():
@@ -111,11 +133,15 @@ def _warnings(parameters: Mapping[str, Interval], valleys: Sequence[ToldValley])
 
 
 def _of_residuals(tested: Whiteness, widened: float, curves: Sequence[FittedCurve]) -> Iterator[str]:
-    if not tested.noise:
+    if tested.of_the_law:
         worst = max(curves, key=lambda curve: curve.error)
         told = f"what is left is no noise (Ljung-Box, p = {tested.probability:.1g}): the model errs by about"
         cause = f"{told} {100.0 * worst.error:.2g} % of the peak, or the noise is coloured (--corner)"
         yield f"{cause}; the intervals are {widened:.2g} times as wide, and not to be trusted"
+    elif not tested.noise:
+        told = f"neighbouring rows of what is left are opposed (Ljung-Box, p = {tested.probability:.1g})"
+        cause = "no law's error is so, but noise of less memory than it was taken for"
+        yield f"{told}: {cause}; the intervals are not to be trusted; cure: --corner of the instrument, or none"
 
 
 def _of_the_sample(posterior: Posterior | None, valleys: Sequence[ToldValley]) -> Iterator[str]:

@@ -163,7 +163,8 @@ class Identified:
     `parameters` by dotted keys, SI units, their intervals over all `valleys`, of which the likeliest is the first;
     `table`: the scene file with the values found; `whiteness` tests what is left, and `warnings` say what it means.
     `widened`: the intervals are so many times as wide as those of noise alone. `posterior`: its draws, `by_reference`:
-    what a reference changed, `each`: what every curve says alone, where these were asked for.
+    what a reference changed, `each`: what every curve says alone, where these were asked for. `beyond`: keys that ran
+    into an end of their search, beyond which the likeliest value lies: they are not found.
     """
 
     source: str
@@ -177,11 +178,22 @@ class Identified:
     posterior: Posterior | None = None
     by_reference: ByReference | None = None
     each: Mapping[str, Identified] = field(default_factory=dict)
+    beyond: tuple[str, ...] = ()
 
     @property
     def adequate(self) -> bool:
         """Whether what is left of the curves is noise."""
         return self.whiteness.noise
+
+    @property
+    def verdict(self) -> str:
+        """What is left of the curves, in words, with the test that says so."""
+        test = f"(Ljung-Box, p = {self.whiteness.probability:.2g})"
+        if self.adequate:
+            return f"what is left is noise {test}"
+        if self.whiteness.of_the_law:
+            return f"the law does not explain the curves {test}"
+        return f"the noise is not of the colour it was taken for {test}"
 
     def to_json(self) -> Table:
         """The content of identified.json."""
@@ -192,6 +204,7 @@ class Identified:
             "schema": SCHEMA,
             "scene": self.source,
             "law": "ting",
+            "converged": not self.beyond,
             "parameters": self._parameters,
             "correlation": {"names": list(self.parameters), "matrix": self.valleys[0].correlation.tolist()},
             "valleys": [asdict(one) | {"correlation": one.correlation.tolist()} for one in self.valleys],

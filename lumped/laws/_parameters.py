@@ -108,7 +108,7 @@ class Parameters:
         if not self.scene.has_geometry:
             self.missing("k", "the stiffness in N/m^alpha; or a scene with shape and material")
             return 1.0
-        check_half_space(self.scene, self.name)
+        self._check_half_space()
         relaxed = self.scene.contact_modulus.relaxed
         if relaxed == 0.0:
             reason = "a fluid has no relaxed modulus to take a stiffness from; accepted: a solid, or law.k"
@@ -120,6 +120,14 @@ class Parameters:
         unit = "N/m" if alpha == 1.0 else f"N/m^{alpha:g}"
         self.taken.append(f"k = {k:.6g} {unit} from the Hertz impact with the relaxed modulus")
         return k
+
+    def _check_half_space(self) -> None:
+        """Raise BadInput where stiffness or damping would have to come from another geometry."""
+        from lumped import laws
+
+        own = f"--set law.name={self.name} --set law.k=..."
+        own += " --set law.e=..." if "e" in laws.get(self.name).keys else ""
+        check_half_space(self.scene, self.name, f", or with its own numbers: {own}")
 
     def damping(self, names: Sequence[str]) -> tuple[str, float]:
         """The one damping given, `names` or e; else e as the scene's own material has it by the exact law."""
@@ -183,6 +191,8 @@ class Parameters:
         if self.scene.contact_modulus.is_elastic:
             return 1.0
         exact = OF_MATERIAL if self.scene.profile.fixed_radius is None else OF_FIXED_AREA
+        if exact == OF_MATERIAL:
+            self._check_half_space()
         e = restitution_by(exact, replace(self.scene, law=None, motion=replace(self.scene.motion, impacts=1)))
         if e is None:
             reason = f"missing, and the scene, which does not separate, has none; accepted: law.e for {self.name}"

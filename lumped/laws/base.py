@@ -120,9 +120,12 @@ def check_load_curve(scene: Scene, name: str) -> None:
         _ = scene.load_curve
 
 
-def check_half_space(scene: Scene, name: str) -> None:
-    """Raise BadInput for a geometry which is not that of a half-space under an axisymmetric profile."""
+def check_half_space(scene: Scene, name: str, otherwise: str = "") -> None:
+    """Raise BadInput for a geometry which is not that of a half-space under an axisymmetric profile.
+
+    `otherwise`: how else the law can be asked.
+    """
     if scene.shape is not None and (not isinstance(scene.target, HalfSpace) or scene.shape.plane):
-        reason = f"{name} is not for this {scene.target.name}, but for the half-space"
+        reason = f"{name} is not for this {scene.target.name}, but for the half-space{otherwise}"
         reason += "; accepted: half_space, or another method"
         raise BadInput(Fault(scene.source, "target.shape", reason))

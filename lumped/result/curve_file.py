@@ -48,6 +48,10 @@ class Dimension:
             raise ValueError(", ".join(column.header for column in measured))
         return measured[0] if measured else None
 
+    def unit_of(self, factor: float) -> str:
+        """The plainest name of the unit of which one is so much in SI; empty where no file has it."""
+        return next((name for name, one in self.units.items() if math.isclose(one, factor) and name.isascii()), "")
+
     def _read(self, place: int, cell: str) -> ColumnOfCurve:
         words = WORD.findall(cell)
         unit = next((known for known in self.units if words and words[-1] == known), "")
@@ -94,6 +98,11 @@ class CurveHeader:
     lines: int
 
     @property
+    def units(self) -> tuple[str, str]:
+        """Those of time and force; SI where none is named."""
+        return self.time.unit or "s", self.force.unit or "N"
+
+    @property
     def remarks(self) -> Iterator[str]:
         """What is not as `time_s,force_N` has it."""
         for dimension, column in ((TIME, self.time), (FORCE, self.force)):
@@ -125,7 +134,7 @@ def read_curve(path: Path) -> Curve:
         raise BadInput(Fault(source, header.force.header, reason))
     separated = {",": "", ";": "semicolons separate the columns", "\t": ""}[header.separator]
     told = (*header.remarks, separated, "commas are decimal" if commas else "")
-    return Curve(time, force, tuple(filter(None, told)))
+    return Curve(time, force, tuple(filter(None, told)), header.units)
 
 
 def _text(content: bytes) -> str:

@@ -15,6 +15,7 @@ import numpy as np
 
 from lumped.errors import BadInput, Fault
 from lumped.numbers import Array
+from lumped.result.curve_file import FORCE, TIME
 from lumped.result.score import Curve
 from lumped.scene.geometry import stiffest_impact
 from lumped.scene.scene import Scene
@@ -32,8 +33,7 @@ LEVEL_OFF, TAIL = 0.02, 0.5  # of the peak: a silence may stand as far from zero
 DECAYED = 0.8  # second half of a silence over its first: a force that creeps to its end falls faster
 EARLY, LATE = 0.2, 0.45  # of the pulse: before zero and after it, where a force of a steep law seems to begin
 SPARE, NEARLY = 0.05, 0.01  # of m v: mass, velocity and force are measured to some per cent; not worth a word
-PREFIXES = {1e3: "m", 1e-3: "k", 1e6: "u", 1e-6: "M"}  # of units mistaken for those without one, by what they make
-THOUSANDS = tuple(PREFIXES)
+THOUSANDS = (1e3, 1e-3, 1e6, 1e-6)  # what a unit mistaken for another makes
 ODD = 200.0  # a duration over that of the scene's material: steel's modulus over rubber's is 1e5, times 0.01 apart
 
 
@@ -50,7 +50,7 @@ def check_curve(curve: Curve, scene: Scene, source: str, touch_at_zero: bool = T
 
     `touch_at_zero`: whether what follows takes the curve's time zero, s, for the first touch. `source`: its file.
     """
-    pulse = MeasuredPulse(curve.time, curve.force)
+    pulse = MeasuredPulse(curve.time, curve.force, curve.units)
     odd = list[str]()
     checks = (*OF_THE_CURVE, _impulse, _duration, *((_touch,) if touch_at_zero else ()))
     for check in checks:
@@ -64,10 +64,14 @@ def check_curve(curve: Curve, scene: Scene, source: str, touch_at_zero: bool = T
 
 @dataclass(frozen=True, eq=False)
 class MeasuredPulse:
-    """A measured force, N, over time, s, both (n,), and where in it the one large pulse lies."""
+    """A measured force, N, over time, s, both (n,), and where in it the one large pulse lies.
+
+    `units`: of time and force in the file.
+    """
 
     time: Array
     force: Array
+    units: tuple[str, str] = ("s", "N")
 
     @cached_property
     def noise(self) -> float:
@@ -298,22 +302,23 @@ def _unit_of(pulse: MeasuredPulse, scene: Scene, ratio: float) -> str:
     if not pairs:
         return ""
     likely = min(map(odd, pairs))
-    return f"{_restitution(ratio)}: {'; or '.join(_units(*pair) for pair in pairs if odd(pair) == likely)}"
+    return f"{_restitution(ratio)}: {'; or '.join(_units(pulse.units, *pair) for pair in pairs if odd(pair) == likely)}"
 
 
-def _units(of_time: float, of_force: float) -> str:
-    """By what factors time and force are wrong, and the headers that say so; no file has a time in ks."""
+def _units(units: tuple[str, str], of_time: float, of_force: float) -> str:
+    """By what factors time and force are wrong beside a file's units, and the headers that say so."""
     said, cures = list[str](), list[str]()
-    for quantity, much, little, unit, factor in (
-        ("time", "long", "short", "s", of_time), ("force", "large", "small", "N", of_force)
+    for quantity, dimension, unit, much, little, factor in (
+        ("time", TIME, units[0], "long", "short", of_time), ("force", FORCE, units[1], "large", "small", of_force)
     ):  # fmt: skip
         if factor == 1.0:
             continue
-        name, times = f"{PREFIXES[factor]}{unit}", f"{max(factor, 1.0 / factor):g}"
-        readable = factor > 1.0 or quantity == "force"
-        read = f": in {name} and read as {unit}" if readable else ""
-        said.append(f"the {quantity} is {times} times too {much if factor > 1.0 else little}{read}")
-        cures.append(f"a header {quantity}_{name}" if readable else f"times multiplied by {times}")
+        name, times = dimension.unit_of(dimension.units[unit] / factor), f"{max(factor, 1.0 / factor):g}"
+        said.append(f"the {quantity} is {times} times too {much if factor > 1.0 else little}")
+        if name:
+            said[-1] += f": in {name} and read as {unit}"
+        other = f"{quantity}s {'divided' if factor > 1.0 else 'multiplied'} by {times}"
+        cures.append(f"a header {quantity}_{name}" if name else other)
     return f"{' and '.join(said)}? cure: {' and '.join(cures)}"
 
 
@@ -336,7 +341,7 @@ def _duration(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
     if span is not None and _beyond(pulse.width, span) > math.log(ODD):
         said = f"the contact lasts {pulse.width:.3g} s, and {span[1]:.3g} s with the scene's material"
         factor = min(THOUSANDS, key=lambda factor: _beyond(pulse.width / factor, span))
-        yield Finding(f"{said}; {_units(factor, 1.0 / factor)}; else the material is far off", False)
+        yield Finding(f"{said}; {_units(pulse.units, factor, 1.0 / factor)}; else the material is far off", False)
 
 
 OF_THE_CURVE: tuple[Check, ...] = (_contact, _sign, _missing, _rate, _clipped, _other_contact, _zero)

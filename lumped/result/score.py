@@ -26,12 +26,13 @@ NO_MOTION: dict[str, float | None] = dict.fromkeys(("peak_depth", "restitution",
 class Curve(ForceOverTime):
     """A measured force: time in s, never decreasing, and force in N, both of shape (n,).
 
-    `remarks`: what was guessed when it was read, as units.
+    `remarks`: what was guessed when it was read, as units; `units`: those of its file, of time and force.
     """
 
     time: Array
     force: Array
     remarks: tuple[str, ...] = ()
+    units: tuple[str, str] = ("s", "N")
 
 
 @dataclass(frozen=True)

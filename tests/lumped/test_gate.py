@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -119,6 +120,30 @@ def test_a_spoiled_file_is_named(text: str, message: str, tmp_path: Path) -> Non
     (tmp_path / "curve.csv").write_text(text, encoding="utf-8")
     with pytest.raises(BadInput, match=message):
         read_curve(tmp_path / "curve.csv")
+
+
+@pytest.mark.parametrize(
+    ("header", "of_time", "of_force", "says"),
+    [
+        ("t [ms];F [kN]", 1e3, 1.0, "force is 1000 times too large: in N and read as kN? cure: a header force_N"),
+        ("t [ms];F [N]", 1e3, 1e-3, "force is 1000 times too small: in kN and read as N? cure: a header force_kN"),
+        ("t [s];F [N]", 1e3, 1.0, "time is 1000 times too long: in ms and read as s? cure: a header time_ms"),
+        ("t [ms];F [N]", 1.0, 1.0, "time is 1000 times too short: in s and read as ms? cure: a header time_s"),
+    ],
+)
+def test_the_cure_of_a_wrong_header_is_the_right_one(
+    header: str, of_time: float, of_force: float, says: str, tmp_path: Path
+) -> None:
+    """The values as they are, under a header that names another unit; under that of the cure they are taken."""
+    path, scene, (time, force) = tmp_path / "curve.csv", Scene.load("steel-ball-sls"), made("steel-ball-sls", 0.0)
+    rows = "".join(f"{t:.12g};{f:.12g}\n" for t, f in zip(of_time * time, of_force * force, strict=True))
+    path.write_text(f"{header}\n{rows}", encoding="utf-8")
+    with pytest.raises(BadInput, match=re.escape(says)):
+        check_curve(read_curve(path), scene, "curve")
+    quantity, cure = says.split()[0], says.rpartition(" ")[2]
+    old = {"time": header.partition(";")[0], "force": header.partition(";")[2]}[quantity]
+    path.write_text(f"{header.replace(old, cure)}\n{rows}", encoding="utf-8")
+    check_curve(read_curve(path), scene, "curve")
 
 
 @pytest.mark.parametrize(

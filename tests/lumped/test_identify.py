@@ -19,6 +19,7 @@ from scipy.special import stdtrit
 
 from lumped import BadInput, Scene, identify, laws, simulate
 from lumped.fit.noise import colour_of, memory, whitened, whiteness
+from lumped.identify import keys as free_keys
 from lumped.identify.ensemble import Linearized, draws_of
 from lumped.identify.histories import Impact
 from lumped.identify.keys import SceneFile
@@ -433,6 +434,20 @@ def test_the_corner_of_a_low_pass_stands_in_for_the_silence() -> None:
     assert told.curves[0].deviation == pytest.approx(0.01 * force.max(), rel=0.15)
 
 
+def test_a_corner_that_the_record_does_not_have_is_no_noise() -> None:
+    """White noise whitened once more: neighbours are opposed, which is no law's error and no noise either."""
+    rng = np.random.default_rng(SEED)
+    table = scene(STRIKERS[0], {"law": "elastic", "E": 1e6})
+    time, force = history_by_springs(table, {})
+    curve = curve_of(rng, time, force, 0.02 * rng.normal(size=4 * ROWS))
+    corner = 0.1 / (curve.time[1] - curve.time[0])
+    found = identify({"curve": curve}, table, ["target.material.E"], corner=corner)
+    assert not found.adequate
+    assert not found.whiteness.of_the_law
+    assert found.verdict.startswith("the noise is not of the colour it was taken for (Ljung-Box, p = ")
+    assert any("opposed" in one and "cure: --corner of the instrument, or none" in one for one in found.warnings)
+
+
 def test_colour_and_whiteness_of_known_series() -> None:
     rng = np.random.default_rng(SEED)
     white = rng.normal(size=4000)
@@ -469,3 +484,31 @@ def test_a_solid_is_sought_by_either_set_of_its_names() -> None:
     assert [material.pop(name) for name in SLS] == pytest.approx([E1 * E2 / (E1 + E2), E2 / E1, C1 / E1])
     assert material == {"law": "sls", "nu": 0.4}
     assert SceneFile.of(table, {}).named_by(["E1", "nu"]).table == table
+
+
+def test_a_spring_that_the_curves_do_not_need_is_named() -> None:
+    """A fluid of one branch taken for a solid."""
+    rng = np.random.default_rng(SEED)
+    fluid = {"law": "maxwell", "E": 1e6, "eta": 1e3}
+    time, force = history_by_springs(scene(STRIKERS[0], fluid), {})
+    curve = curve_of(rng, time, force, 0.005 * rng.normal(size=ROWS))
+    table = scene(STRIKERS[0], {"law": "sls", "E1": 1e6, "E2": 1e6, "C1": 1e4})
+    found = identify({"curve": curve}, table, [f"target.material.{name}" for name in ("E1", "E2", "C1")])
+    assert found.parameters["target.material.E1"].value < 1e3
+    (said,) = (one for one in found.warnings if "ran into the end of its search" in one)
+    assert said.startswith("target.material.E1 ")
+    assert said.endswith("Pa: the curves do not need it; cure: a law without it, or hold it")
+    assert not found.beyond
+
+
+def test_a_search_that_ends_before_the_likeliest_value_did_not_converge(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A mass guessed farther off than a search looks."""
+    monkeypatch.setattr(free_keys, "REACH", 10.0)
+    rng = np.random.default_rng(SEED)
+    table = scene(STRIKERS[0], {"law": "elastic", "E": 1e6})
+    curve = curve_of(rng, *history_by_springs(table, {}), 0.005 * rng.normal(size=ROWS))
+    table["striker"]["mass"] *= 0.05
+    found = identify({"curve": curve}, table, ["striker.mass"])
+    assert found.beyond == ("striker.mass",)
+    assert not found.to_json()["converged"]
+    assert "striker.mass ran into the upper end of its search, 0.025 kg: it is not found; cure: " in found.warnings[0]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -17,9 +17,10 @@ from fe_contact.reference import Solved
 from fe_contact.studies import style
 from fe_contact.studies.compare.deviations import rebound_steps, surface_radii
 from fe_contact.studies.compare.law_pressure import LawPressure
-from fe_contact.studies.compare.study import Comparison, judged
+from fe_contact.studies.compare.study import MEASURED, Comparison, judged
 from fe_contact.studies.history_chart import caption
 from fe_contact.studies.style import Look, prefixed, readable
+from lumped.numbers import Array
 from lumped.result.history import History
 from lumped.result.score import Curve as Measured
 
@@ -27,6 +28,7 @@ PANELS = 4.6  # height of the four panels with what is around them, in
 TITLE_WIDTH = 122  # characters
 LEAST_SHOWN = 1e-6  # of the peak: the lower end of the logarithmic panel
 LEGEND, ROW, NAMES = 0.3, 0.17, 6  # in, above the panels; a further row of the legend, in, and names in one
+MOST_TIMES = 3.0  # look: of the reference's end, beyond which no law that ends later is shown
 MOST_TENSION = 0.6  # of the largest pressure: a viscous law's tension at the edge is singular, and cut there
 # A dash a candidate, beside a law's colour: the reference is a broad grey line below all of them.
 STYLES: dict[str, Look] = {
@@ -34,7 +36,7 @@ STYLES: dict[str, Look] = {
     "correspondence": {"linestyle": "-"},
     "ting": {"linestyle": (0, (5, 2.2))},
     "mdr": {"linestyle": (2.5, (2.2, 5))},
-    "measured": {"color": style.PURPLE, "linestyle": "-", "linewidth": 0.9},
+    MEASURED: {"color": style.BLACK, "linestyle": "none", "marker": ".", "markersize": 2.5, "zorder": 4.0},
 }
 REFERENCE: Look = {"color": "#b8b8b8", "linewidth": 4.2, "solid_capstyle": "butt"}
 
@@ -60,7 +62,7 @@ def _candidates(comparison: Comparison) -> Iterator[tuple[History | Measured, Lo
     for name, law in comparison.laws.items():
         yield law.history, line_of(name)
     if comparison.measured is not None:
-        yield comparison.measured, line_of("measured")
+        yield comparison.measured, line_of(MEASURED)
 
 
 def line_of(name: str) -> Look:
@@ -73,7 +75,7 @@ def _legend(figure: Figure, comparison: Comparison, height: float) -> None:
     handles: list[Artist] = [Line2D([], [], **REFERENCE)]
     handles += [Patch(color=style.SKY, alpha=0.45, linewidth=0)]
     handles += [Line2D([], [], **line_of(name)) for name in names]
-    labels = ["finite elements", "their error bar", *names]
+    labels = ["finite elements", "their error bar", *("measured curve" if one == MEASURED else one for one in names)]
     columns = min(len(labels), NAMES)
     figure.legend(handles, labels, loc="lower left", bbox_to_anchor=(0.07, height - 0.012), ncols=columns,
                   columnspacing=1.5, handlelength=2.4, borderaxespad=0.0)  # fmt: skip
@@ -98,8 +100,8 @@ def _force(axes: Axes, comparison: Comparison) -> None:
     side, shift = ("left", 3.0) if turn < 0.6 * span else ("right", -3.0)
     axes.annotate("maximum depth", (second * turn, 0.0), (shift, 3.0), textcoords="offset points", ha=side,
                   fontsize=6.0, color="#666666")  # fmt: skip
-    axes.set(ylabel=f"force, {unit}")
-    axes.set_ylim(bottom=0.0)
+    forces = [(curve.time, curve.force) for curve in (history, *(curve for curve, _ in _candidates(comparison)))]
+    axes.set(ylabel=f"force, {unit}", ylim=(0.0, newton * _highest(forces, span)))
     style.label(axes, "a", "contact force")
 
 
@@ -122,13 +124,13 @@ def _distance(axes: Axes, comparison: Comparison) -> None:
 
 def _radius(axes: Axes, comparison: Comparison) -> None:
     history = comparison.reference.history
-    second, _ = _time_axis(axes, comparison)
+    second, span = _time_axis(axes, comparison)
     metre, unit = prefixed(history.contact_radius.max(), "m")
     axes.plot(second * history.time, metre * history.contact_radius, **REFERENCE)
     for name, law in comparison.laws.items():
         axes.plot(second * law.history.time, metre * law.history.contact_radius, **line_of(name))
-    axes.set(ylabel=f"radius, {unit}")
-    axes.set_ylim(bottom=0.0)
+    radii = [(one.time, one.contact_radius) for one in (history, *(law.history for law in comparison.laws.values()))]
+    axes.set(ylabel=f"radius, {unit}", ylim=(0.0, metre * _highest(radii, span)))
     style.label(axes, "b", "contact radius")
 
 
@@ -170,12 +172,22 @@ def _without_pressure(solved: Solved | None) -> str:
     return "no rebound before the end of the history" if told else "under a flat end: that of the indentation"
 
 
+def _highest(curves: Sequence[tuple[Array, Array]], span: float) -> float:
+    """The upper end of an axis that shows curves, times, s, and values, (n,) each, up to a time, s, with some room."""
+    times = np.linspace(0.0, span, 1200)
+    return 1.05 * max(float(np.interp(times, time, values).max()) for time, values in curves)
+
+
 def _time_axis(axes: Axes, comparison: Comparison) -> tuple[float, float]:
-    """Up to the latest end of any history, a line at the reference's maximum depth; factor of time, that end, s."""
-    histories = [comparison.reference.history, *(law.history for law in comparison.laws.values())]
-    span = max(float(history.time[-1]) for history in histories)
+    """Up to the latest end of any law, but for those that end far later than the reference, which the axis tells; a
+    line at the reference's maximum depth; factor of time, that end, s.
+    """
+    most = MOST_TIMES * float(comparison.reference.history.time[-1])
+    latest = max((float(law.history.time[-1]) for law in comparison.laws.values()), default=0.0)
+    span = max(min(latest, most), most / MOST_TIMES)
     factor, unit = prefixed(span, "s")
-    axes.set(xlabel=f"time, {unit}", xlim=(0.0, 1.01 * factor * span))
+    cut = f" (cut at {MOST_TIMES:g} contact times; laws go on)" if latest > most else ""
+    axes.set(xlabel=f"time, {unit}{cut}", xlim=(0.0, 1.01 * factor * span))
     deepest = factor * comparison.told.deepest
     axes.axvline(deepest, color=style.GREY, linewidth=0.6, linestyle=(0, (1, 2)), zorder=0)
     return factor, span

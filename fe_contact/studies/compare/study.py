@@ -52,6 +52,8 @@ CURVE_ORDER = 2  # of the slopes at its depths, which what lies between them err
 WITHIN = "within the reference's error bar"
 DECISIVE = ("history", "held_until_max_depth", "peak_force", "peak_depth", "duration", "restitution")
 SCHEMA = "fe-contact/compare/1"
+MEASURED = "measured"  # what the curve's judgement is called
+FAR_LATER = 9.0  # look: a duration too long by ten times and more is no matter of per cent
 SCORES = (
     "peak_force", "peak_time", "peak_depth", "duration", "restitution", "impulse", "work", "loss", "shape",
     "peak_shift", "contact_radius_rebound", "pressure_rebound", "held_until_max_depth",
@@ -168,7 +170,7 @@ def _curve(told: Told, reference: Result, measured: Measured) -> Judgement:
     errors: dict[str, float | None] = {name: getattr(scored, name) for name in (*QUANTITIES, *DISTANCES)}
     errors |= {"contact_radius_rebound": None, "pressure_rebound": None} | force_errors(told, measured)
     bars = {name: _bar(reference, name) for name in QUANTITIES} | force_bars(told, 0.0)
-    return Judgement("measured", 100 * scored.normalized_error, errors, bars)
+    return Judgement(MEASURED, 100 * scored.normalized_error, errors, bars)
 
 
 def _error(reference: Result, law: Result, name: str) -> float | None:
@@ -210,7 +212,8 @@ def verdicts(comparison: Comparison) -> tuple[str, ...]:
     """What :func:`judged` says; then the laws that gave no answer, those of one reason together."""
     reasons: dict[str, list[str]] = {}
     for name, reason in comparison.refused.items():
-        reasons.setdefault(reason.replace(name, "it"), []).append(name)
+        alike = reason.replace(f"law.name={name}", "law.name=NAME").replace(name, "it")
+        reasons.setdefault(alike, []).append(name)
     refused = [f"{', '.join(names)}: {reason}" for reason, names in reasons.items()]
     return (*judged(comparison), *refused)
 
@@ -229,7 +232,9 @@ def judged(comparison: Comparison) -> tuple[str, ...]:
     sentences: dict[str, list[str]] = {}
     for judgement in comparison.judgements:
         sentences.setdefault(_sentence(comparison, judgement), []).append(judgement.name)
-    lines = [f"{', '.join(names)}: {sentence}" for sentence, names in sentences.items()]
+    lines = [
+        sentence if names == [MEASURED] else f"{', '.join(names)}: {sentence}" for sentence, names in sentences.items()
+    ]
     return (*lines, *([] if comparison.nested is None else [_nested(comparison.nested)]))
 
 
@@ -240,6 +245,8 @@ def _nested(areas: NestedAreas) -> str:
 
 
 def _sentence(comparison: Comparison, judgement: Judgement) -> str:
+    if judgement.name == MEASURED:
+        return _of_measured(judgement)
     if not any(judgement.exceeds(name) for name in DECISIVE) and not _only_one_separates(comparison, judgement):
         return WITHIN
     parts = [_approach(judgement)]
@@ -249,6 +256,17 @@ def _sentence(comparison: Comparison, judgement: Judgement) -> str:
     if error is not None and judgement.exceeds("restitution"):
         parts.append(f"restitution {_digits(abs(error))} too {'low' if error < 0 else 'high'}")
     return ", ".join(part for part in parts if part)
+
+
+def _of_measured(judgement: Judgement) -> str:
+    """A measurement does not err: what differs from it is the reference."""
+    if not any(judgement.exceeds(name) for name in DECISIVE):
+        return "the reference agrees with the measured curve within its error bar"
+    share = percent(judgement.errors["held_until_max_depth"] or 0.0)
+    parts = [f"the reference differs from the measured curve by up to {share} of the peak before maximum depth"]
+    parts += _signed(judgement, "peak_force", "the measured peak is {} lower", "the measured peak is {} higher")
+    parts += _signed(judgement, "duration", "the measured contact is {} shorter", "the measured contact is {} longer")
+    return ", ".join(parts)
 
 
 def _approach(judgement: Judgement) -> str:
@@ -261,6 +279,8 @@ def _approach(judgement: Judgement) -> str:
 def _end(comparison: Comparison, judgement: Judgement) -> str:
     if _only_one_separates(comparison, judgement):
         return "does not separate" if comparison.reference.separated else "separates where the reference does not"
+    if (judgement.errors["duration"] or 0.0) > FAR_LATER:
+        return "ends far later"
     signed = _signed(judgement, "duration", "ends {} too early", "ends {} too late")
     return signed[0] if signed else "ends on time" if judgement.errors["duration"] is not None else ""
 
@@ -285,7 +305,7 @@ def percent(share: float) -> str:
 
 def _digits(value: float) -> str:
     """Two significant digits, never in exponential notation for what a reader meets."""
-    return f"{value:.2g}" if 1e-4 <= value < 100 or value == 0 else f"{value:.0f}" if value >= 100 else f"{value:.0e}"
+    return f"{value:.2g}" if 1e-4 <= value < 99.5 or value == 0 else f"{value:.0f}" if value >= 99.5 else f"{value:.0e}"
 
 
 def write_comparison(comparison: Comparison, where: Path) -> None:

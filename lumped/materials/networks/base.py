@@ -12,9 +12,9 @@ from lumped.schema.keys import Key, Number, Sets, keys_of, made
 
 MODULUS_OR_ZERO = Number(0.0, 1e16, "Pa")
 TIME = Number(1e-15, 1e15, "s")
+VISCOSITY = Number(1e-15, 1e25, "Pa s")
 Modulus = Annotated[float, Key(MODULUS, "modulus of a spring")]
-Viscosity = Annotated[float, Key(Number(1e-15, 1e25, "Pa s"), "viscosity of a dashpot")]
-Time = Annotated[float, Key(TIME, "time of relaxation or retardation")]
+Viscosity = Annotated[float, Key(VISCOSITY, "viscosity of a dashpot")]
 
 
 @dataclass(frozen=True)

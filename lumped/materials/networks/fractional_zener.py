@@ -10,7 +10,7 @@ import numpy as np
 
 from lumped.errors import NotReached
 from lumped.materials.laplace import Complex
-from lumped.materials.networks.base import TIME, Modulus, Network, Time
+from lumped.materials.networks.base import MODULUS, TIME, Network
 from lumped.materials.prony_fit import of_operational
 from lumped.materials.relaxation import Relaxation
 from lumped.schema.keys import Key, Number, Numbers
@@ -21,9 +21,9 @@ ACCURACY = 1e-6  # default: relative deviation of the series from the law within
 
 
 def of(
-    E_inf: Modulus,
-    E_glass: Modulus,
-    tau: Time,
+    E_inf: Annotated[float, Key(MODULUS, "equilibrium modulus: after a long time")],
+    E_glass: Annotated[float, Key(MODULUS, "instantaneous modulus")],
+    tau: Annotated[float, Key(TIME, "time of relaxation")],
     alpha: Annotated[float, Key(Number(0.05, 0.95), "order of the springpot")],
     window: Annotated[tuple[float, ...], Key(Numbers(TIME, most=2), "shortest and longest time to be right at")] = (),
     accuracy: Annotated[float, Key(Number(1e-8, 1e-2), "relative deviation allowed there")] = ACCURACY,
