@@ -27,7 +27,7 @@ from fe_contact.settings import RANGES, Given, WaveNumerics
 from fe_contact.waves.balls import Ball, flying
 from fe_contact.waves.impact import choices_of
 from fe_contact.waves.moving import BEYOND, SMALLEST, Flying, Moving, UnitBody, WaveSide
-from fe_contact.waves.plan import SMOOTH_STEPS, SPREAD, SPRINGS, TRAVEL, contact_time, placed
+from fe_contact.waves.plan import SMOOTH_STEPS, SPREAD, SPRINGS, STEPS, TRAVEL, contact_time, placed
 from fe_contact.waves.targets.base import WaveTarget, changing, too_fast
 from lumped.errors import BadInput, Fault
 from lumped.laws import mdr
@@ -62,7 +62,8 @@ def plan(scene: Scene, given: Given) -> Plan:
     scales = mdr.estimate(scene, SPRINGS)
     longest = _slowest(scene, scales.restitution) * contact_time(scene, scales)
     far_radius = _far_radius(scene, scales.contact_radius, longest)
-    return placed(scene, given, scales, far_radius, usual_steps=SMOOTH_STEPS)
+    steps = SMOOTH_STEPS if scene.motion.impacts == 1 else STEPS  # what is left of one contact shakes the next
+    return placed(scene, given, scales, far_radius, usual_steps=steps)
 
 
 def _slowest(scene: Scene, restitution: float | None) -> float:
