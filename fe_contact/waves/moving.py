@@ -19,7 +19,7 @@ from fe_contact.dynamics.body import BodyState, BodyWithMass, Part, Pressing
 from fe_contact.dynamics.mass.base import MASSES
 from lumped.scene.scene import Scene
 
-SMALLEST = 0.15  # contact radius over the largest one down to which every contact is resolved alike
+SMALLEST = 0.1  # contact radius over the largest one down to which every contact is resolved alike
 BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
 
 
