@@ -492,8 +492,8 @@ def test_a_spring_that_the_curves_do_not_need_is_named() -> None:
     fluid = {"law": "maxwell", "E": 1e6, "eta": 1e3}
     time, force = history_by_springs(scene(STRIKERS[0], fluid), {})
     curve = curve_of(rng, time, force, 0.005 * rng.normal(size=ROWS))
-    table = scene(STRIKERS[0], {"law": "sls", "E1": 1e6, "E2": 1e6, "C1": 1e4})
-    found = identify({"curve": curve}, table, [f"target.material.{name}" for name in ("E1", "E2", "C1")])
+    table = scene(STRIKERS[0], {"law": "sls", "E1": 1e5, "E2": 1e6, "C1": 1e3})
+    found = identify({"curve": curve}, table, ["target.material.E1"])
     assert found.parameters["target.material.E1"].value < 1e3
     (said,) = (one for one in found.warnings if "ran into the end of its search" in one)
     assert said.startswith("target.material.E1 ")

@@ -10,7 +10,8 @@ import numpy as np
 
 from lumped.errors import NotReached
 from lumped.materials.laplace import Complex
-from lumped.materials.networks.base import MODULUS, TIME, Network
+from lumped.materials.material import MODULUS
+from lumped.materials.networks.base import TIME, Network
 from lumped.materials.prony_fit import of_operational
 from lumped.materials.relaxation import Relaxation
 from lumped.schema.keys import Key, Number, Numbers

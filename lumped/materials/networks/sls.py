@@ -2,7 +2,8 @@
 
 from typing import Annotated
 
-from lumped.materials.networks.base import MODULUS, TIME, VISCOSITY, Network
+from lumped.materials.material import MODULUS
+from lumped.materials.networks.base import TIME, VISCOSITY, Network
 from lumped.materials.relaxation import Relaxation
 from lumped.schema.keys import Key, Number
 
