@@ -15,6 +15,7 @@ from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.dynamics.body import BodyWithMass, Part, Pressing, state_of, undeformed
 from fe_contact.dynamics.march import Moment, Steppers, account_at_start
 from fe_contact.dynamics.stepping import Enforced
+from fe_contact.waves import impact
 from fe_contact.waves.impact import Flights
 from lumped.materials import Relaxation
 
@@ -140,9 +141,6 @@ class Clocked(Flights):
         time = moment.state.time + stepper
         return SimpleNamespace(time=time, signed_pressure=np.array([1.0 if time >= self.touch else -1.0]))
 
-    def _entered(self, moment: Any, state: Any) -> Any:
-        return SimpleNamespace(state=state)
-
     def _touched(self, moment: Any) -> Any:
         return moment
 
@@ -150,8 +148,9 @@ class Clocked(Flights):
 @pytest.mark.parametrize("flight", [3.5, 40.5, 1000.5, 54321.5])
 @pytest.mark.parametrize("patience", [2, 5])
 def test_steps_of_a_flight_double_and_shrink_until_the_touch_is_within_the_shortest(
-    flight: float, patience: int
+    monkeypatch: pytest.MonkeyPatch, flight: float, patience: int
 ) -> None:
+    monkeypatch.setattr(impact, "_entered", lambda moment, stepper, state: SimpleNamespace(state=state))
     flights = Clocked(flight, patience)
     still: Any = SimpleNamespace(state=SimpleNamespace(time=0.0))
     found = flights.landing(still, math.inf)

@@ -29,7 +29,7 @@ REFUSED = [
     (f"plan steel-ball --set numerics.steps=1{'0' * 400}", "--set: numerics.steps: 1000"),
     (f"plan steel-ball --set striker.radius={'[' * 500}", "--set: striker.radius: nested too deep"),
     (f"plan steel-ball --set a{'.a' * 500}=1", "--set: a.a.a"),
-    ("fit CURVE --scene steel-ball --law hert", "--law: 'hert' is not available"),
+    ("fit CURVE --scene steel-ball --law hert", "--law: 'hert' is not known"),
     ("fit CURVE --scene steel-ball --law hertz --free q", "--free: q: unknown parameter"),
     ("fit CURVE --scene steel-ball --law hertz --fix alpha=-1", "--fix: alpha: -1.0 is not accepted"),
     ("fit CURVE --scene steel-ball --law hertz --bounds k=2:1", "--bounds: k: 2:1 is empty"),
