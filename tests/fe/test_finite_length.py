@@ -26,7 +26,7 @@ from lumped.scene.indenter import Indenter
 
 THICK = 0.003  # m
 KINDS = ("ring", "bonded", "sliding")
-CAMPAIGN = 100
+CAMPAIGN = 40
 LARGE = 20_000_000  # matrix entries of what tells whether a bar was right
 
 
