@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -70,7 +71,7 @@ class Fit:
     def summary(self) -> str:
         """Every parameter with its interval, one a line."""
         held = ", peak held" if self.peak_held else ""
-        lines = [f"{self.law}: normalized error {100.0 * self.normalized_error:.3g} % on {self.points} points{held}"]
+        lines = [f"{self.law}: normalized error {error_in_words(self.normalized_error)} on {self.points} points{held}"]
         lines += [f"{name:{WIDTH}s} {estimate}" for name, estimate in self.parameters.items()]
         lines += [f"{name:{WIDTH}s} {value:.6g} held" for name, value in self.held.items()]
         return "\n  ".join([*lines, f"force at half depth, {self.depth:.4g} m: {self.force_at_depth}"])
@@ -121,3 +122,8 @@ def write_failure(directory: Path, law: str, message: str) -> None:
     """Write the fit.json of a search that did not converge; it takes the place of an older fit. Raises CannotWrite."""
     content = {"schema": SCHEMA, "law": law, "converged": False, "message": message, "parameters": None}
     publish(directory, lambda folder: write_json(folder / RECORD, content), RECORD)
+
+
+def error_in_words(error: float) -> str:
+    """A normalized error in per cent; infinite where an impact outlasts the curve so far that no time compares them."""
+    return f"{100.0 * error:.3g} %" if math.isfinite(error) else "infinite (the law's impact outlasts the curve)"

@@ -14,6 +14,7 @@ from fe_contact.progress import Progress, silent
 from fe_contact.studies.transfer.study import CALIBRATIONS, Calibration, calibrated
 from fe_contact.studies.transfer.verdict import QUANTITIES
 from lumped.errors import BadInput, Fault, shown
+from lumped.fit.record import error_in_words
 from lumped.fit.space import own_keys
 from lumped.laws._force_law import ForceLaw
 from lumped.pounding.case_file import PoundingCase
@@ -132,6 +133,13 @@ class CalibratedStudy:
             for name, motion in list(self.study.motions.items())[1:]
         }
 
+    @property
+    def errors(self) -> dict[str, float]:
+        """By law, how far it is from the force that it was fitted to, "(20)", in its worst gap."""
+        numbers = self.calibration.numbers
+        found = {name: [one.error for one in own.values() if one.error is not None] for name, own in numbers.items()}
+        return {name: max(errors) for name, errors in found.items() if errors}
+
     def to_json(self) -> Table:
         """What pound.json says beside the study."""
         return {"calibration": self.calibration.to_json() | {"bars": dict(self.bars), "choice": self.choice}}
@@ -140,6 +148,7 @@ class CalibratedStudy:
         """What the choice of a law changes, a line a law."""
         first, name = self.study.main.measures(), next(iter(self.study.motions))
         lines = [f"bar of the reference, by {name}: {_changes(self.bars, first, '+-')}"]
+        lines += [f"normalized error of {law} on the reference: {error_in_words(e)}" for law, e in self.errors.items()]
         lines += [f"{other} in the place of {name}: {_changes(one, first, '')}" for other, one in self.choice.items()]
         return lines
 
