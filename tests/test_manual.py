@@ -150,6 +150,16 @@ def test_what_the_manual_tells_to_do_can_be_done(page: str, empty: Path) -> None
     for example in examples():
         if example.page == page:
             done(example)
+    for table in empty.glob("fe-contact-out/*/*.csv"):
+        header = table.read_text(encoding="utf-8").partition("\n")[0].split(",")
+        told = told_columns()
+        assert all(any(one.fullmatch(column) for one in told) for column in header), (table.name, header)
+
+
+def told_columns() -> list[re.Pattern[str]]:
+    """Every column that the page of tables names; capitals stand for a name of the user's."""
+    words = re.findall(r"`(\w+)`", (HERE / "tables.md").read_text(encoding="utf-8"))
+    return [re.compile(re.sub("LAW|STOREY|GAP", r"\\w+", word)) for word in words]
 
 
 def done(example: Example) -> None:

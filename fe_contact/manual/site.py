@@ -44,7 +44,7 @@ FIRST = "start"
 MENU: Mapping[str, Sequence[str]] = {
     "Start here": ("start", "experiment", "exponents", "choosing"),
     "Work": ("yielding", "large_strains", "sweeps", "identify", "transfer", "pounding", "others"),
-    "Look up": ("scenes", "keys", "commands", "running", "theory", "error_bars", "dictionary"),
+    "Look up": ("scenes", "keys", "commands", "tables", "running", "theory", "error_bars", "dictionary"),
     "Know": ("limits", "errata", "adding"),
 }
 EXTENSIONS = ("tables", "fenced_code", "toc", "sane_lists")

@@ -331,7 +331,7 @@ class SceneReader(TableReader):
     def law(self) -> LawChoice | None:
         """The law with its parameters; None without one, or with a fault noted."""
         table = self.table("law", required=False)
-        if not table:
+        if not table and not isinstance(self.raw.get("law"), Mapping):
             return None
         (own,) = alternatives(LAWS, table.get("name"))
         values = self.checked("law", table, {"name": Key(Member(LAWS.package)), **own})

@@ -151,6 +151,14 @@ def test_all_faults_come_at_once_but_at_most_twenty() -> None:
     assert len(faults(table)) == 20
 
 
+def test_an_empty_law_misses_its_name() -> None:
+    """Masses alone have no other way to answer; without a law at all it is the shape that is missing."""
+    masses = {"name": "two", "striker": {"mass": 1.0, "velocity": 1.0}}
+    assert ["law.name: missing" in fault for fault in faults(masses | {"law": {}})] == [True]
+    assert faults(masses | {"law": 5.0}) == ["scene.toml: law: not a table"]
+    assert any("striker.shape: missing" in fault for fault in faults(masses))
+
+
 def test_what_is_not_built_yet_says_what_is() -> None:
     (fault,) = [f for f in faults(changed("striker.shape", "torus")) if "striker.shape" in f]
     assert "not known; accepted: cone, cylinder, plate, power, prism, profile, punch," in fault
