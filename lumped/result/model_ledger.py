@@ -162,10 +162,15 @@ def _exponent(scene: Scene, peak: Peak) -> float:
         return 1.0
     try:
         curve = scene.target.load_curve(scene.profile, scene.geometry.material.nu)
-        force, slope = map(float, curve.force_and_slope(peak.depth))
+        return max(_power(curve, peak.depth)[1], 1.0)
     except FeContactError:  # no load curve, or one that ends before this depth
         return 1.0
-    return max(peak.depth * slope / force, 1.0)
+
+
+def _power(curve: LoadCurve, depth: float) -> tuple[float, float]:
+    """Force of a load curve at a depth, over its modulus, and the exponent there. Raises BadInput beyond its range."""
+    force, slope = map(float, curve.force_and_slope(depth))
+    return force, depth * slope / force
 
 
 def _pressed_on(weight: float, n: float) -> float:
@@ -312,8 +317,7 @@ def _struck(modulus: Relaxation, curve: LoadCurve, scene: Scene, peak: Peak) -> 
 
     n and c are the load curve's at the peak; lengths over the elastic depth, which is reached in a time of one.
     """
-    force, slope = map(float, curve.force_and_slope(peak.depth))
-    n = peak.depth * slope / force
+    force, n = _power(curve, peak.depth)
     work, brought = force * peak.depth / (n + 1.0), 0.5 * scene.reduced_mass * scene.velocity**2
     unit = peak.depth * (brought / (modulus.relaxed * work)) ** (1.0 / (n + 1.0)) / scene.velocity
     return _largest_force(modulus.stretched(1.0 / unit).scaled(1.0 / modulus.relaxed), n, peak.duration / unit / ROWS)
