@@ -133,7 +133,8 @@ class Reading:
 @dataclass(frozen=True)
 class Curve:
     """Mean force since touch (n,), N, depth (n,), m, at ``x`` (n,); squared radius at ``radius_x``; duration and how
-    sharply its end can be read, s; energies of the account, J; how sharply peaks can be read, by quantity.
+    sharply its end can be read, s; energies of the account, J; how sharply peaks can be read, by quantity; when the
+    force peaks, s, where the march knows it.
     """
 
     strike: Strike
@@ -147,6 +148,7 @@ class Curve:
     end_spread: float
     energy: Energies
     peak_spread: Mapping[str, float] = field(default_factory=dict)
+    peaked_at: float | None = None
 
     @classmethod
     def of(cls, march: March, strike: Strike) -> Curve:
@@ -306,6 +308,8 @@ class Curve:
 
     @property
     def _force_peak(self) -> tuple[float, float]:
+        if self.peaked_at is not None:
+            return self.peaked_at, float(self.force(np.array([self.peaked_at]))[0])
         if self.fitless:
             return peak(self.dense_time, self.dense_force)
         return self._peak_of(self.near_peak)

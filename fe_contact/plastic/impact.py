@@ -1,7 +1,8 @@
 """An impact on a half-space that yields: without inertia of its own it knows depths alone, and no time.
 
 The force is one function of the depth until the striker's energy is spent, another one from there on. Work and time are
-their integrals; every setting is varied once, and each of these runs has a greatest depth of its own.
+their integrals; every setting is varied once, and each of these runs has a greatest depth of its own. There the force
+peaks and its second derivative jumps, which no polynomial through both sides would tell.
 """
 
 from __future__ import annotations
@@ -313,7 +314,7 @@ class Striking:
         runs = Varied.of(runner.run, numerics)
         told, works = Varied(*(run.answered for run in runs)), [run.work for run in runs]
         march = runner.motion(told.mended(_onwards)).march(runs.base.work)
-        curve = Curve.of(march, Strike.of(self.scene))
+        curve = curve_of(march, self.scene)
         self._check_end(curve.duration)
         changes = {
             cause: tuple(runner.variation(pair) for pair in pairs) for cause, pairs in told.pairs(_onwards).items()
@@ -339,6 +340,11 @@ class Striking:
         return model_ledger(self.scene, Peak.of(found.quantities, found.history()))
 
 
+def curve_of(march: March, scene: Scene) -> Curve:
+    """The curve of a march, whose force peaks where its depth does."""
+    return replace(Curve.of(march, Strike.of(scene)), peaked_at=float(march.time[march.depth.argmax()]))
+
+
 def dent(found: Budget) -> IndentationLeft:
     """What is left for ever, with its bar: nothing recovers."""
     left = found.curve.depth[-1:]
@@ -354,7 +360,7 @@ def plan(scene: Scene, given: Given) -> Plan:
     """Settings and ledger, by a coarse run. Raises NotReached."""
     check(scene, given)
     known = pilot(scene)
-    radius, about = float(known.march.radius.max()), Curve.of(known.march, Strike.of(scene)).quantities
+    radius, about = float(known.march.radius.max()), curve_of(known.march, scene).quantities
     duration, peak_time = about["duration"] or 0.0, about["peak_time"] or 0.0
     numerics = replace(
         settings(given, known.course),
@@ -431,6 +437,6 @@ class Runner:
     def variation(self, pair: Contrast[Answered]) -> Variation:
         """Of the striker's motion."""
         first, second = (
-            Curve.of(self.motion(answer).march(Work()), Strike.of(self.scene)) for answer in (pair.first, pair.second)
+            curve_of(self.motion(answer).march(Work()), self.scene) for answer in (pair.first, pair.second)
         )
         return Variation(first, second, pair.factor)

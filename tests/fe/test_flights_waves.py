@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.dynamics.body import BodyWithMass, Part, Pressing, state_of, undeformed
-from fe_contact.dynamics.march import Moment, Steppers, account_at_start
+from fe_contact.dynamics.march import Energies, Moment, Motion, Sample, Steppers, account_at_start
 from fe_contact.dynamics.stepping import Enforced
 from fe_contact.waves import impact
 from fe_contact.waves.impact import Flights
@@ -158,3 +158,53 @@ def test_steps_of_a_flight_double_and_shrink_until_the_touch_is_within_the_short
     assert flight - 1.0 < found.state.time < flight
     assert flights.steps < (patience + 3.0) * (math.log2(1.0 + flight / patience) + 2.0)
     assert min(flights.lengths) == 1.0
+
+
+def bounced(mass: float, velocity: float, gravity: float, step: float) -> tuple[Motion, float]:
+    """A mass that meets a spring of one, in equal steps up to the first after it has left, and when it does, s."""
+    pace = math.sqrt(1.0 / mass)
+    rest, speed = gravity / pace**2, velocity / pace
+
+    def depth(time: float) -> float:
+        return rest * (1.0 - math.cos(pace * time)) + speed * math.sin(pace * time)
+
+    def rate(time: float) -> float:
+        return velocity * math.cos(pace * time) + gravity / pace * math.sin(pace * time)
+
+    end = (math.pi + 2.0 * math.atan(rest / speed)) / pace
+
+    def at(time: float) -> Sample:
+        flown = max(time - end, 0.0)
+        deep = depth(time) if not flown else rate(end) * flown + 0.5 * gravity * flown**2
+        fast = rate(min(time, end)) + gravity * flown
+        force, here = max(deep, 0.0), np.array([deep])
+        energies = Energies(
+            0.5 * mass * velocity**2 + mass * gravity * deep, 0.5 * mass * fast**2, 0.0, 0.5 * force**2, *4 * [0.0]
+        )
+        signed = np.array([-1.0, deep, deep, -1.0])
+        return Sample(time, force, force * step, here, np.array([fast]), signed, here, np.array([fast]), energies, 1)
+
+    samples = tuple(at(step * n) for n in range(math.ceil(end / step) + 1))
+    final: Any = None
+    return Motion(samples, final, 1), end
+
+
+def test_a_striker_that_leaves_between_two_steps_has_left_where_and_as_fast_as_it_did() -> None:
+    """A mass on a spring, under gravity: all that it has is its motion again, and its path ends at the surface."""
+    mass, velocity, gravity, step = 2.0, 0.7, 0.2, 0.1
+    found, end = bounced(mass, velocity, gravity, step)
+    assert found.time[-1] - end > 0.3 * step
+    scene: Any = SimpleNamespace(
+        profile=SimpleNamespace(exponent_of_force=1.0), reduced_mass=mass, velocity=velocity, gravity=gravity
+    )
+    moving: Any = SimpleNamespace(endless=False, places=np.array([-2.0, -1.0, 1.0, 2.0]))
+    march = impact.record(moving, found, scene)
+    assert march.separated
+    assert march.time[-1] == pytest.approx(end, rel=1e-4)
+    assert march.depth[-1] == pytest.approx(-velocity * (march.time[-1] - end), abs=1e-7)
+    assert march.impulse[-1] == pytest.approx(mass * (2.0 * velocity + gravity * end), rel=1e-3)
+    energy, fast = march.energy, float(found.samples[-1].velocity[0])
+    assert energy["out"] == pytest.approx(0.5 * mass * fast**2)
+    assert energy["in"] == pytest.approx(energy["out"])
+    rest = {name: value for name, value in energy.items() if name not in ("in", "out")}
+    assert np.array(list(rest.values())) == pytest.approx(0.0, abs=1e-12)

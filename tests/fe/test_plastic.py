@@ -469,7 +469,7 @@ def moves_as(striker: Table, scene: Scene) -> dict[str, float]:
     return {
         "peak_force": k * deepest**power,
         "peak_depth": deepest,
-        "coming": half,
+        "peak_time": half,
         "duration": half * (1.0 + back),
         "restitution": back,
         "impulse": MASS * scene.velocity * (1.0 + back),
@@ -486,7 +486,7 @@ def test_an_impact_on_a_body_that_answers_as_known_is_known(striker: Table, know
     radius = RADIUS if striker is PUNCH else math.sqrt(RADIUS * true["peak_depth"])
     assert expected.contact_radius == pytest.approx(radius, rel=0.02)
     # the plan does not know the release: as far out as in
-    assert expected.contact_time == pytest.approx(2.0 * true.pop("coming"), rel=1e-3)
+    assert expected.contact_time == pytest.approx(2.0 * true["peak_time"], rel=1e-3)
     assert expected.peak_share == pytest.approx(0.5, rel=1e-3)
     found = fe_contact.run(scene, tolerance=1e-3)
     assert found.converged
@@ -520,11 +520,11 @@ def test_bars_of_an_impact_hold_what_its_settings_err_by_which_are_refined(
     scene = Scene.from_dict(tables(mass=MASS, velocity=SLOW))
     true, first = moves_as({}, scene), plan(scene, {"tolerance": 1e-3}).numerics
     found = fe_contact.run(scene, tolerance=1e-3)
-    for name in ("peak_force", "peak_depth", "duration"):
-        quantity = found.quantities[name]
+    for name in ("peak_force", "peak_time", "peak_depth", "duration"):
+        quantity, most = found.quantities[name], 3.0 if name == "peak_time" else 2.0  # the slope of a change may ripple
         wrong, bar = abs((quantity.value or 0.0) - true[name]), quantity.error or 0.0
         assert wrong <= bar + 2e-5 * true[name], name
-        assert cause == "time_step" or bar <= 2.0 * wrong, name
+        assert cause == "time_step" or bar <= most * wrong, name
     for name in ("restitution", "impulse"):
         assert found.quantities[name].value == pytest.approx(true[name], rel=1e-6)
     assert found.recovery is not None
