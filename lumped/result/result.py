@@ -170,10 +170,10 @@ class Result:
 
     `error_budget`: relative to peak force, by cause; `error_budget_by_quantity`: the same for every quantity.
     `model` is the model as resolved, to which every claimed error refers. Energies, and their bars where they are told,
-    in J. `rows`: the history, or what makes it. `contacts`: start, duration, velocity, restitution, peak_force, peak_time, peak_depth of each, where several
-    were asked for; duration and restitution among the quantities are the first one's. `recovery`: of the surface after
-    separation, None where it is not told. `weighed`: every method with its bar, cost, s, and why it was taken or not,
-    where the cheapest was asked for.
+    in J. `rows`: the history, or what makes it. `contacts`: start, duration, velocity, restitution, peak_force,
+    peak_time, peak_depth of each, where several were asked for; duration and restitution among the quantities are the
+    first one's. `recovery`: of the surface after separation, None where it is not told. `weighed`: every method with
+    its bar, cost, s, and why it was taken or not, where the cheapest was asked for.
     """
 
     method: str

@@ -25,6 +25,20 @@ def half_sine(rows: int = 401) -> History:
     return History(t, wave / np.pi, np.cos(np.pi * t), 3.0 * wave, np.sqrt(wave), 0.0 * t)
 
 
+def test_a_law_makes_its_rows_once_and_only_for_who_reads_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = list[float]()
+    monkeypatch.setattr(
+        "lumped.laws._assembly.densified", lambda times, force, tolerance: made.append(tolerance) or times
+    )
+    scene = Scene.load("polymer-sphere")
+    found = simulate(laws.get("correspondence").of(scene), scene, 1e-3)
+    assert found.quantities["peak_force"].value
+    assert not made
+    assert found.history is found.history
+    assert len(found.model_ledger)
+    assert made == [1e-3]
+
+
 def test_written_history_reads_back_bit_by_bit(tmp_path: Path) -> None:
     history = half_sine()
     history.write_csv(tmp_path / "history.csv")
