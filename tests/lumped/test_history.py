@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
@@ -27,9 +28,12 @@ def half_sine(rows: int = 401) -> History:
 
 def test_a_law_makes_its_rows_once_and_only_for_who_reads_them(monkeypatch: pytest.MonkeyPatch) -> None:
     made = list[float]()
-    monkeypatch.setattr(
-        "lumped.laws._assembly.densified", lambda times, force, tolerance: made.append(tolerance) or times
-    )
+
+    def counted(times: ArrayLike, force: Callable[[Array], Array], tolerance: float) -> Array:
+        made.append(tolerance)
+        return densified(times, force, tolerance)
+
+    monkeypatch.setattr("lumped.laws._assembly.densified", counted)
     scene = Scene.load("polymer-sphere")
     found = simulate(laws.get("correspondence").of(scene), scene, 1e-3)
     assert found.quantities["peak_force"].value
