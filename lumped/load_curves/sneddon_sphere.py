@@ -12,11 +12,11 @@ from numpy.typing import ArrayLike
 from lumped.load_curves.half_space import HalfSpaceCurve
 from lumped.numbers import Array, Real
 
-# u - tanh u = u^3/3 - 2u^5/15 + ...: where the difference itself would lose digits.
-SERIES = (1 / 3, -2 / 15, 17 / 315, -62 / 2835, 1382 / 155925, -21844 / 6081075, 929569 / 638512875)
-SERIES_BELOW = 0.15  # rounding: of u, below it the difference would lose digits and the series stands
-# Depth over radius.
-SHALLOW = 0.05
+# u^2 - r in POWERS of r = u tanh u: below SHALLOW what follows is less than rounding.
+TERMS = (1 / 3, 4 / 45, 16 / 945, 16 / 14175, -64 / 93555, -69248 / 212837625, -512 / 8292375, 211712 / 32564156625)
+SERIES, POWERS = np.array(TERMS), np.arange(2.0, 10.0)
+SHALLOW = 0.05  # rounding: of r, the depth over the radius; above it u - tanh u keeps its digits as a difference
+TINY = 1e-300  # in place of zero, in a quotient
 
 
 @dataclass(frozen=True)
@@ -36,16 +36,15 @@ class SneddonSphere(HalfSpaceCurve):
 
     def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
         """F/E*, m^2, and 2 a, m."""
-        u = self._angles(depth)
-        t = np.tanh(u)
-        return self.radius**2 * (_minus_tanh(u, t) + t * t * u), 2.0 * self.radius * t
+        ratio = self._ratio(depth)
+        t, rest = _tanh(ratio)
+        return self.radius**2 * (rest + ratio * t), 2.0 * self.radius * t
 
     def contact_radius(self, depth: ArrayLike) -> Real:
         """a = R tanh u with u tanh u = depth/R, m."""
         if isinstance(depth, float):
-            ratio = max(depth, 0.0) / self.radius
-            return self.radius * math.tanh(_angle(ratio, math.tanh, ratio))
-        return self.radius * np.tanh(self._angles(depth))
+            return self.radius * math.tanh(_angle(max(depth, 0.0) / self.radius, math.tanh))
+        return self.radius * _tanh(self._ratio(depth))[0]
 
     def depth(self, contact_radius: ArrayLike) -> Real:
         """a artanh(a/R), m; infinite at a = R, nan beyond."""
@@ -61,36 +60,36 @@ class SneddonSphere(HalfSpaceCurve):
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.arctanh(ratio) + ratio / ((1.0 - ratio) * (1.0 + ratio))
 
-    def _angles(self, depth: ArrayLike) -> Array:
-        """u at depths, an array of their shape."""
-        ratio = np.asarray(np.maximum(depth, 0.0) / self.radius)
-        return np.asarray(_angle(ratio, np.tanh, _largest(ratio)))
+    def _ratio(self, depth: ArrayLike) -> Array:
+        """Depths over R, an array of their shape."""
+        return np.asarray(np.maximum(depth, 0.0) / self.radius)
 
 
-def _angle(ratio: Real, tanh: Callable[[Real], Real], deepest: float) -> Real:
+def _tanh(ratio: Array) -> tuple[Array, Array]:
+    """tanh u and u - tanh u with u tanh u = ratio >= 0, both to full relative precision."""
+    if not np.maximum.reduce(ratio, axis=None, initial=0.0) >= SHALLOW:  # sooner told than by the array's own method
+        return _shallow(ratio)
+    deep = ratio >= SHALLOW
+    near, rest = _shallow(np.where(deep, 0.0, ratio))
+    u = _angle(np.where(deep, ratio, SHALLOW), np.tanh)
+    t = np.tanh(u)
+    return np.where(deep, t, near), np.where(deep, u - t, rest)
+
+
+def _shallow(ratio: Array) -> tuple[Array, Array]:
+    """The same below SHALLOW."""
+    more = np.power.outer(ratio, POWERS) @ SERIES
+    u = (ratio + more) ** 0.5 + TINY
+    return ratio / u, more / u
+
+
+def _angle(ratio: Real, tanh: Callable[[Real], Real]) -> Real:
     """u >= 0 with u tanh u = ratio, by Newton; `tanh` is the scalar's or the array's.
 
-    The first guess errs by 5 % at most, three steps make that 5e-14 and the fourth leaves rounding; shallow it errs by
-    2/45 ratio^2, and two steps do.
+    The first guess errs by 5 % at most, three steps make that 5e-14 and the fourth leaves rounding.
     """
-    u = (ratio + ratio * ratio / 3.0) ** 0.5 + 1e-300
-    for _ in range(2 if deepest < SHALLOW else 4):
+    u = (ratio + ratio * ratio / 3.0) ** 0.5 + TINY
+    for _ in range(4):
         t = tanh(u)
         u = u - (u * t - ratio) / (t + u * (1.0 - t * t))
     return u
-
-
-def _minus_tanh(u: Array, t: Array) -> Array:
-    """u - tanh u to full relative precision."""
-    square = u * u
-    series = SERIES[-1] * square + SERIES[-2]
-    for coefficient in SERIES[-3::-1]:
-        series *= square
-        series += coefficient
-    series = u * square * series
-    return series if _largest(u) < SERIES_BELOW else np.where(u < SERIES_BELOW, series, u - t)
-
-
-def _largest(values: Array) -> float:
-    """Of values >= 0 of any shape; sooner told than by their own method."""
-    return float(np.maximum.reduce(values, axis=None, initial=0.0))

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from decimal import Decimal, localcontext
+
 import numpy as np
 import pytest
 
 from lumped import Material, Relaxation, Scene, laws, simulate
 from lumped.load_curves import ConeCurve, Hertz, LoadCurve, Power, SneddonSphere
 from lumped.load_curves.sampled import SampledCurve
+from lumped.load_curves.sneddon_sphere import SHALLOW
 from lumped.scene.scene import Answered
 from lumped.shapes import Parabola, Shape, Sphere
 from lumped.shapes.punch import Punch
@@ -103,6 +106,31 @@ def test_sphere_becomes_hertz_when_small() -> None:
     for ratio, error in [(0.1, 0.001), (0.4, 0.017)]:
         depth = float(Hertz(RADIUS).depth(ratio * RADIUS))
         assert Hertz(RADIUS).force(depth) / SneddonSphere(RADIUS).force(depth) - 1.0 == pytest.approx(error, rel=0.1)
+
+
+def exact_sphere(ratio: float) -> tuple[float, float]:
+    """F/(E* R^2) and a/R at a depth over R, of 50 digits: u tanh u is halved in between until it is the ratio."""
+    with localcontext() as context:
+        context.prec = 50
+        low, high = Decimal(0), Decimal(ratio).sqrt() + Decimal(ratio)
+        for _ in range(200):
+            u = (low + high) / 2
+            t = 1 - 2 / ((2 * u).exp() + 1)
+            low, high = (u, high) if u * t < Decimal(ratio) else (low, u)
+        return float((1 + t * t) * u - t), float(t)
+
+
+def test_a_sphere_keeps_its_digits_at_every_depth() -> None:
+    ratios = np.array([1e-12, 1e-6, 1e-3, 0.02, np.nextafter(SHALLOW, 0.0), SHALLOW, 0.1, 0.9, 3.0])
+    exact = np.array([exact_sphere(float(ratio)) for ratio in ratios]).T
+    curve = SneddonSphere(1.0)
+    together, alone = (
+        curve.force_and_slope(ratios),
+        [curve.force_and_slope(one) for one in np.split(ratios, ratios.size)],
+    )
+    for found in (np.array(together), np.concatenate(alone, axis=-1)):
+        np.testing.assert_allclose(found, [exact[0], 2.0 * exact[1]], rtol=1e-14)
+    np.testing.assert_allclose([curve.contact_radius(float(ratio)) for ratio in ratios], exact[1], rtol=1e-15)
 
 
 def test_overlap_with_a_half_space_is_depth_less_height() -> None:

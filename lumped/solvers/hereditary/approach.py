@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
@@ -65,9 +66,9 @@ class PieceMotion:
         problem, weights = self.problem, self.weights
         modulus = problem.modulus
         # (1 + W/tau_k)^-1, shape (K, N, N): the rise of a memory by the rise of what it remembers.
-        eye = np.eye(self.elapsed.size)
+        eye = _unit_matrix(self.elapsed.size)
         answers = np.asarray(np.linalg.inv(eye + weights * problem.rates[:, None, None]), dtype=float)
-        response = np.einsum("k,kij->ij", problem.stiffnesses, answers) + modulus.equilibrium * eye
+        response = (problem.stiffnesses @ answers.reshape(-1, eye.size)).reshape(eye.shape) + modulus.equilibrium * eye
         left = (problem.stiffnesses * state[4:]) @ answers.sum(axis=2)
         twice, coasted = weights @ weights, state[0] + state[1] * self.elapsed
         a, before = np.full(self.elapsed.size, guess), 0.0
@@ -109,6 +110,11 @@ class PieceMotion:
         if self.problem.terms:
             values[4:, 1:] = (answers @ (state[4:, None] + rise)[..., None])[..., 0]
         return values
+
+
+@cache
+def _unit_matrix(count: int) -> Array:
+    return np.eye(count)
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache, cached_property
 from itertools import pairwise
 from typing import Protocol
@@ -48,11 +48,11 @@ class Path:
 
     def of_fields(self, chosen: list[int]) -> Path:
         """The same path with these fields only, in this order."""
-        return replace(self, coefficients=self.coefficients[:, chosen])
+        return Path(self.breaks, self.coefficients[:, chosen], self.end)
 
     def until(self, end: float) -> Path:
         """The same path with another end."""
-        return replace(self, end=end)
+        return Path(self.breaks, self.coefficients, end)
 
     def at(self, places: Array) -> Array:
         """All fields at places (n,), shape (fields, n)."""
@@ -120,8 +120,9 @@ class Path:
         # Each interval between samples lies in one piece, and the top in the one into which the curve rises.
         for low, high in pairwise(places[max(i - 1, 0) : i + 2]):
             value, slope = self.curve(index, 0.5 * (low + high))
-            if slope(low) > 0.0 > slope(high):
-                top = falling_zero(slope, low, high)
+            ends = slope(low), slope(high)
+            if ends[0] > 0.0 > ends[1]:
+                top = falling_zero(slope, low, high, ends)
                 return top, value(top)
         return places[i], float(values[i])
 

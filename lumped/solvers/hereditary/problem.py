@@ -105,11 +105,16 @@ class Hereditary:
         """The rates of `springs`, which are those of the moduli and none for E_inf."""
         return np.array([0.0, *self.rates])
 
+    @cached_property
+    def _units(self) -> tuple[float, float]:
+        """Of depth, m, and of load, m2."""
+        return self.scales.depth, self.scales.load
+
     def loads(self, depth: Array) -> tuple[Array, Array]:
         """y and dy/d depth at a depth; y is odd: below zero it pulls, so that a force ends by crossing zero."""
-        force, slope = self.curve.force_and_slope(np.abs(depth) * self.scales.depth)
-        unit = self.scales.load
-        return np.copysign(force / unit, depth), np.asarray(slope * (self.scales.depth / unit))
+        deep, load = self._units
+        force, slope = self.curve.force_and_slope(np.abs(depth) * deep)
+        return np.copysign(force / load, depth), np.asarray(slope * (deep / load))
 
     def bend(self, depth: Array, slope: Array) -> Array:
         """d2y/d depth2 by a difference, good for Newton's steps."""
