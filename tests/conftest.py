@@ -87,11 +87,16 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
 def campaign_size(request: pytest.FixtureRequest) -> Callable[..., int]:
     """How many of a campaign's n cases to run: all with --full, a tenth with --tenth, else a hundredth, rounded up.
 
-    `least`: as many as it takes to find what the campaign has to find. A campaign draws its cases one after the other
-    from one seeded generator, so a part is the first of the whole and the same every day.
+    `least`: as many as it takes to find what the campaign has to find; `most`: as many as a part of a dear one may
+    cost. A campaign draws its cases one after the other from one seeded generator, so a part is the first of the whole
+    and the same every day.
     """
     part = {"full": 1, "tenth": TENTH, "plain": TENTH**2}[size_of(request.config)]
-    return lambda n, least=1: max(-(-n // part), min(n, least))
+
+    def size(n: int, least: int = 1, most: int | None = None) -> int:
+        return n if part == 1 else min(max(-(-n // part), min(n, least)), most or n)
+
+    return size
 
 
 @pytest.fixture(scope="session", autouse=True)

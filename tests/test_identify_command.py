@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ import pytest
 from fe_contact import run
 from fe_contact.cli import main
 from lumped import Scene, identify, laws, simulate
+from lumped.result.history import History
 from lumped.result.score import Curve
 
 FREE = "target.material.E1,target.material.E2,target.material.C1"
@@ -113,6 +115,12 @@ def test_bad_options_write_nothing(
     assert message in fault
 
 
+@cache
+def pressed(name: str) -> History:
+    """The impact of a packaged scene by finite elements."""
+    return run(Scene.load(name), tolerance=1e-3).history
+
+
 @pytest.mark.tenth
 @pytest.mark.parametrize("name", ["polymer-layer", "rod-in-ring"])
 def test_a_finite_element_impact_tells_its_material(name: str) -> None:
@@ -120,7 +128,7 @@ def test_a_finite_element_impact_tells_its_material(name: str) -> None:
 
     Without noise what is left is the reference's own error, well inside its bar; the glassy spring is told best.
     """
-    history = run(Scene.load(name), tolerance=1e-3).history
+    history = pressed(name)
     time = np.linspace(-0.3, 1.5, 500) * history.time[-1]
     found = identify({"reference": Curve(time + 7.0, history.force_at(time))}, name, FREE.split(","))
     for key, true in TRUTH.items():
@@ -132,7 +140,7 @@ def test_a_finite_element_impact_tells_its_material(name: str) -> None:
 @pytest.mark.tenth
 def test_a_layer_tells_poisson_s_ratio() -> None:
     """Bonded to its base it cannot give way sideways, which a half-space can: there E and nu are one number."""
-    history = run(Scene.load("polymer-layer"), tolerance=1e-3).history
+    history = pressed("polymer-layer")
     time = np.linspace(-0.3, 1.5, 500) * history.time[-1]
     noise = 0.01 * history.force.max() * np.random.default_rng(2).normal(size=time.size)
     free = [*FREE.split(","), "target.material.nu"]

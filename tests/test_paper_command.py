@@ -90,7 +90,6 @@ def test_the_grid_holds_both_laws(written: tuple[Path, str]) -> None:
         assert float(row["ting_duration_s"]) > float(row["correspondence_duration_s"])
 
 
-@pytest.mark.tenth
 def test_a_changed_input_changes_what_depends_on_it(
     written: tuple[Path, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

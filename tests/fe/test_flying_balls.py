@@ -137,11 +137,12 @@ def test_the_ledger_knows_how_much_a_ball_without_inertia_leaves_out() -> None:
 def test_two_slow_balls_are_those_without_inertia(uncovered: Callable[..., dict[str, float]]) -> None:
     """Unlike in size and material, either of them as the striker: action is reaction."""
     other = {"radius": 3.1e-3, "material": {"E": 7e10, "nu": 0.2, "density": 2500.0}}
-    still, waves = (simulate(pair(0.02, inertia, **other), "fe", {}) for inertia in (False, True))
+    coarse = {"tolerance": 0.02}
+    still, waves = (simulate(pair(0.02, inertia, **other), "fe", coarse) for inertia in (False, True))
     table = waves.scene.to_dict()
     bodies = [{key: table[part][key] for key in ("radius", "mass", "material")} for part in ("target", "striker")]
     tables = {part: table[part] | body for part, body in zip(("striker", "target"), bodies, strict=True)}
-    swapped = simulate(Scene.from_dict(table | tables), "fe", {})
+    swapped = simulate(Scene.from_dict(table | tables), "fe", coarse)
     assert waves.converged, waves.message
     assert not uncovered(still, waves)
     assert not uncovered(swapped, waves)
@@ -261,9 +262,9 @@ def test_bars_hold_the_answer_of_settings_for_a_quarter_of_the_tolerance(
     target: dict[str, Any], many: int, campaign_size: Callable[[int], int]
 ) -> None:
     rng = np.random.default_rng(17)
-    for _ in range(campaign_size(many)):
+    for number in range(campaign_size(many)):
         scene = random_scene(rng, target)
-        result = simulate(scene, "fe", {})
+        result = simulate(scene, "fe", {"tolerance": (0.02, 0.003)[number % 2]})
         assert result.converged, result.message
         finer = curve_of(scene, tolerance=result.tolerance / 4).quantities
         for name in WHOLE:
@@ -278,7 +279,7 @@ COARSE: list[dict[str, Any]] = [
     {"order": 3, "elements_per_contact": 2.0},
     {"order": 2, "penalty": 1.0, "elements_per_contact": 4.0},
 ]
-STEPS, FINER = 80, 2e-3
+STEPS, FINER = 80, 4e-3
 
 
 @pytest.mark.tenth

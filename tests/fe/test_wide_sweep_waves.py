@@ -24,7 +24,7 @@ from lumped import BadInput, FeContactError, Result, Scene
 from lumped.laws import bar_waves, rod_waves
 
 BALLS, RODS, BLOCKS = 40, 229, 231  # scenes of the whole campaign
-FEW = {BALLS: 4, RODS: 8, BLOCKS: 12}  # of it that a minute allows
+FEW = {BALLS: 3, RODS: 5, BLOCKS: 8}  # of it that half a minute allows
 CONVERGE = 0.95
 LAWS = ("elastic", "sls", "prony", "maxwell", "kelvin_voigt")
 QUANTITIES = ("peak_force", "peak_depth", "duration", "impulse", "restitution")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -156,13 +157,20 @@ def test_a_curve_cut_off_in_the_contact_tells_the_same() -> None:
     assert found.normalized_error < 1e-4
 
 
+@cache
+def noisy_fits(law: str, count: int) -> tuple[Fit, ...]:
+    """So many fits of a law to itself with seeded noise of 1 %."""
+    generator, truth = np.random.default_rng(20), history(law, **TRUTHS[law])
+    return tuple(fit(noisy(truth, 0.01, generator), law, BODY) for _ in range(count))
+
+
 @pytest.mark.tenth
 @pytest.mark.parametrize("law", ["kelvin", "hunt_crossley"])
 def test_the_truth_lies_within_the_interval_as_often_as_said(law: str, campaign_size: Callable[..., int]) -> None:
     """With 1 % noise, 95 % of the intervals should hold it."""
-    generator, truth = np.random.default_rng(20), history(law, **TRUTHS[law])
-    fits = [fit(noisy(truth, 0.01, generator), law, BODY) for _ in range(campaign_size(300, least=20))]
-    held = [holds(one, name, value) for one in fits for name, value in TRUTHS[law].items()]
+    held = [
+        holds(one, name, value) for one in noisy_fits(law, campaign_size(300)) for name, value in TRUTHS[law].items()
+    ]
     assert 0.90 <= np.mean(held) <= 0.99
 
 
@@ -176,8 +184,7 @@ def holds(found: Fit, name: str, value: float) -> bool:
 @pytest.mark.tenth
 def test_covariance_is_that_of_many_fits(campaign_size: Callable[[int], int]) -> None:
     """Against the scatter of fits to seeded noise: spread within its own sampling error, sign of the correlation."""
-    generator, truth = np.random.default_rng(3), history("hunt_crossley", **TRUTHS["hunt_crossley"])
-    fits = [fit(noisy(truth, 0.01, generator), "hunt_crossley", BODY) for _ in range(campaign_size(300))]
+    fits = noisy_fits("hunt_crossley", campaign_size(300))
     scatter = np.cov(np.array([list(one.values.values()) for one in fits]).T)
     claimed = np.mean([one.covariance for one in fits], axis=0)
     error = 4.0 / np.sqrt(2.0 * len(fits))

@@ -152,7 +152,7 @@ WRONG = {
 @pytest.mark.parametrize("law", WRONG)
 def test_a_wrong_law_is_called_wrong(law: str, campaign_size: Callable[..., int]) -> None:
     """Wherever the law's own error exceeds the noise twice."""
-    rng, cases = np.random.default_rng(SEED), campaign_size(40, 2)
+    rng, cases = np.random.default_rng(SEED), campaign_size(40, least=2, most=2)
     every, called = truths(rng, "sls"), list[bool]()
     own, names = WRONG[law]
     while len(called) < cases:
