@@ -61,8 +61,8 @@ class Profile(Bent):
 
     def check_contact(self, contact_radius: float) -> str:
         """Not beyond the last row."""
-        wide = f"a contact of {contact_radius:.3g} m; the profile's table ends at {self.widest:g} m"
-        return wide if contact_radius > self.widest else ""
+        wide = f"a contact of {contact_radius:.3g} m; the profile's table ends at {self.r[-1]:g} m"
+        return wide if contact_radius > self.r[-1] else ""
 
 
 class _Chords(NamedTuple):

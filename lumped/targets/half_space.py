@@ -78,8 +78,9 @@ class HalfSpace(Target):
 
     def check_contact(self, contact_radius: float) -> str:
         """Narrower than the datum is deep: the point to which depth refers must lie below the contact."""
-        wide = f"contact {contact_radius:.3g} m wide; accepted below the datum's depth {self.widest:g} m"
-        return wide if contact_radius >= self.widest else ""
+        if self.datum_depth is None or contact_radius < self.datum_depth:
+            return ""
+        return f"contact {contact_radius:.3g} m wide; accepted below the datum's depth {self.datum_depth:g} m"
 
 
 MEMBER = Part(HalfSpace)
