@@ -204,7 +204,7 @@ def _result(scene: Scene, known: KnownCurve, found: Result, tolerance: float, cl
         model=scene.model,
         converged=not missed and found.separated,
         tolerance=tolerance,
-        rows=history,
+        history=history,
         quantities=quantities,
         numerics=known.pressed.numerics,
         error_budget={cause: row["peak_force"] / peak for cause, row in budget.items()},

@@ -7,7 +7,6 @@ than guessed at.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass, replace
 
@@ -82,8 +81,7 @@ def _lumped(scene: Scene, name: str, given: Given, progress: Progress) -> Result
     with counting_steps(Count.of(progress, f"time steps of {name}", 0.0)):
         found = simulate_law(laws.get(name).of(scene), scene, tolerance=tolerance_of(given))
     if scene.has_geometry:
-        limit = min(scene.geometry.target.widest, scene.geometry.shape.widest)
-        widest = float(np.nanmax(found.history.contact_radius, initial=0.0)) if limit < math.inf else 0.0
+        widest = float(np.nanmax(found.history.contact_radius, initial=0.0))
         scene.check_sunk(found.quantities["peak_depth"].value or 0.0, widest)
     return found
 

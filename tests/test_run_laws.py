@@ -82,6 +82,7 @@ def test_finite_elements_have_nothing_to_run_without_geometry(refused: Callable[
         ("polymer-prism", 50.0, "fe", "block's 0.02 m"),
         ("polymer-prism", 50.0, "correspondence", "block's 0.02 m"),
         ("polymer-washer", 20.0, "fe", "washer's height 0.004 m"),
+        ("polymer-profile", 0.5, "correspondence", "profile's table ends at 0.004 m"),
     ],
 )
 def test_an_impact_through_the_body_is_refused(name: str, velocity: float, method: str, body: str) -> None:

@@ -94,7 +94,7 @@ def record(scene: Scene, solved: SolvedBy[Solution], recovery: IndentationLeft |
         scene=scene,
         model=scene.model,
         tolerance=found.numerics.tolerance,
-        rows=found.history(),
+        history=found.history(),
         quantities=found.quantities,
         numerics=found.numerics.as_dict(),
         error_budget={cause: value / peak for cause, value in by_quantity["peak_force"].items()},

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -175,7 +174,12 @@ def assemble(
     `model` is the model as the law resolves it, where that is not the scene's with small displacements and
     without inertia.
     """
-    rows = _Rows(scene, tolerance, answer, quantities, force_error)
+    times = densified(answer.rows(scene), answer.columns.force, max(tolerance, FINEST_ROWS))
+    depth, velocity, force, radius = answer.columns(times)
+    depth[0], velocity[0] = 0.0, scene.velocity  # the touch, which the polynomials know to rounding
+    # The rows themselves add what linear interpolation errs by, less than the tolerance; the bar is for the
+    # rows.
+    history = History(times, depth, velocity, force, radius, np.full(times.size, force_error))
     resolved = model or replace(scene.model, inertia=False, kinematics="small", plasticity=False)
     missed = unmet(quantities, tolerance)
     peak = quantities["peak_force"].value or 1.0
@@ -186,12 +190,12 @@ def assemble(
         scene=scene,
         model=resolved,
         tolerance=tolerance,
-        rows=rows.history,
+        history=history,
         quantities=quantities,
         numerics=numerics,
         error_budget={"integration": force_error / peak},
         error_budget_by_quantity={"integration": _relative(quantities)},
-        model_ledger=Ledger(scene, rows.peak, resolved),
+        model_ledger=Ledger(scene, Peak.of(quantities, history), resolved),
         energy=answer.energy,
         provenance=provenance(),
         timing=clock.read(),
@@ -199,34 +203,6 @@ def assemble(
         message="; ".join(part for part in (answer.message, missed) if part),
         contacts=answer.contacts,
     )
-
-
-@dataclass(frozen=True, eq=False)
-class _Rows:
-    """What an answer tells row by row, found when it is first asked for."""
-
-    scene: Scene
-    tolerance: float
-    answer: Answer
-    quantities: Mapping[str, Quantity]
-    force_error: float
-
-    @cached_property
-    def _history(self) -> History:
-        times = densified(self.answer.rows(self.scene), self.answer.columns.force, max(self.tolerance, FINEST_ROWS))
-        depth, velocity, force, radius = self.answer.columns(times)
-        depth[0], velocity[0] = 0.0, self.scene.velocity  # the touch, which the polynomials know to rounding
-        # The rows themselves add what linear interpolation errs by, less than the tolerance; the bar is for the
-        # rows.
-        return History(times, depth, velocity, force, radius, np.full(times.size, self.force_error))
-
-    def history(self) -> History:
-        """Dense enough for the tolerance."""
-        return self._history
-
-    def peak(self) -> Peak:
-        """The scales of the impact."""
-        return Peak.of(self.quantities, self._history)
 
 
 def _relative(quantities: Mapping[str, Quantity]) -> dict[str, float]:

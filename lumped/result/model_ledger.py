@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import overload
@@ -92,14 +92,13 @@ class Ledger(Sequence[LedgerEntry]):
     """That of :func:`model_ledger`, reckoned when it is first read: of many impacts the numbers alone are asked."""
 
     scene: Scene
-    peak: Peak | Callable[[], Peak]
+    peak: Peak
     model: Model
 
     @cached_property
     def entries(self) -> tuple[LedgerEntry, ...]:
         """All of them."""
-        peak = self.peak if isinstance(self.peak, Peak) else self.peak()
-        return model_ledger(self.scene, peak, self.model)
+        return model_ledger(self.scene, self.peak, self.model)
 
     @overload
     def __getitem__(self, place: int) -> LedgerEntry: ...

@@ -5,9 +5,9 @@ from __future__ import annotations
 import html
 import math
 import platform
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
-from functools import cache, cached_property
+from functools import cache
 from pathlib import Path
 
 from lumped.numbers import Array
@@ -170,10 +170,10 @@ class Result:
 
     `error_budget`: relative to peak force, by cause; `error_budget_by_quantity`: the same for every quantity.
     `model` is the model as resolved, to which every claimed error refers. Energies, and their bars where they are told,
-    in J. `rows`: the history, or what makes it. `contacts`: start, duration, velocity, restitution, peak_force,
-    peak_time, peak_depth of each, where several were asked for; duration and restitution among the quantities are the
-    first one's. `recovery`: of the surface after separation, None where it is not told. `weighed`: every method with
-    its bar, cost, s, and why it was taken or not, where the cheapest was asked for.
+    in J. `contacts`: start, duration, velocity, restitution, peak_force, peak_time, peak_depth of each, where several
+    were asked for; duration and restitution among the quantities are the first one's. `recovery`: of the surface after
+    separation, None where it is not told. `weighed`: every method with its bar, cost, s, and why it was taken or not,
+    where the cheapest was asked for.
     """
 
     method: str
@@ -182,7 +182,7 @@ class Result:
     scene: Scene
     model: Model
     tolerance: float
-    rows: History | Callable[[], History]
+    history: History
     quantities: Mapping[str, Quantity]
     numerics: Table = field(default_factory=dict)
     error_budget: Mapping[str, float] = field(default_factory=dict)
@@ -197,11 +197,6 @@ class Result:
     contacts: tuple[Mapping[str, float | None], ...] = ()
     recovery: IndentationLeft | None = None
     weighed: tuple[Table, ...] = ()
-
-    @cached_property
-    def history(self) -> History:
-        """Made when it is first read: of many impacts the quantities alone are asked."""
-        return self.rows if isinstance(self.rows, History) else self.rows()
 
     @property
     def model_sufficient(self) -> bool:

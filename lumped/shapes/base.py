@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from abc import ABC, abstractmethod
 from typing import ClassVar
 
@@ -96,11 +95,6 @@ class Shape(Record, ABC):
         Here those of a force which is a power of the depth throughout, exact.
         """
         return power_impact(self.load_curve, self.exponent_of_force, modulus, mass, velocity)
-
-    @property
-    def widest(self) -> float:
-        """Contact radius, m, up to which :meth:`check_contact` refuses none."""
-        return math.inf
 
     def check_contact(self, contact_radius: float) -> str:
         """What is wrong with a contact as wide, m, under this profile; empty where nothing is."""

@@ -54,11 +54,6 @@ class Profile(Bent):
         """Its bends, in closed form."""
         return _bent(np.array(self.r), np.array(self.heights))
 
-    @property
-    def widest(self) -> float:
-        """Its last row."""
-        return self.r[-1]
-
     def check_contact(self, contact_radius: float) -> str:
         """Not beyond the last row."""
         wide = f"a contact of {contact_radius:.3g} m; the profile's table ends at {self.r[-1]:g} m"

@@ -182,11 +182,6 @@ class Target(Record, ABC):
             return f"accepted below {self.through} {height:g} m"
         return f"accepted below the striker's radius {radius:g} m" if radius is not None and depth >= radius else ""
 
-    @property
-    def widest(self) -> float:
-        """Contact radius, m, up to which :meth:`check_contact` refuses none."""
-        return math.inf
-
     def check_contact(self, contact_radius: float) -> str:
         """What is wrong with a contact as wide, m; empty where nothing is."""
         return ""

@@ -71,11 +71,6 @@ class HalfSpace(Target):
         if not shape.plane and self.datum_depth is not None:
             raise BadInput(Fault(source, "target.datum_depth", "only for a cylinder; accepted: leave it out"))
 
-    @property
-    def widest(self) -> float:
-        """As wide as the datum is deep."""
-        return inf if self.datum_depth is None else self.datum_depth
-
     def check_contact(self, contact_radius: float) -> str:
         """Narrower than the datum is deep: the point to which depth refers must lie below the contact."""
         if self.datum_depth is None or contact_radius < self.datum_depth:

@@ -111,7 +111,7 @@ def _higher(reference: Result) -> Result:
     if restitution.value is not None:
         quantities["restitution"] = replace(restitution, value=restitution.value + (restitution.error or 0.0))
     history = replace(reference.history, force=(1.0 + share) * reference.history.force)
-    return replace(reference, quantities=quantities, rows=history)
+    return replace(reference, quantities=quantities, history=history)
 
 
 @dataclass(frozen=True, eq=False)
