@@ -15,6 +15,7 @@ from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import SETTING
 from fe_contact.budget.plan import EARLY_PEAK
 from fe_contact.budget.refine import AIM, factors, missing
+from fe_contact.settings import RANGES
 from fe_contact.steppers.steps import March, Strike, Work
 from fe_contact.waves.certify import AT, GROWTH, ORDER, ROWS, WaveRuns, certify, curve_of, reading
 from fe_contact.waves.plan import graded, viscous_share
@@ -130,6 +131,17 @@ def test_what_the_user_chose_is_not_refined() -> None:
         assert getattr(finer, key) == getattr(numerics, key)
         assert all(getattr(finer, SETTING[one]) > getattr(numerics, SETTING[one]) for one in ORDER if one != cause)
     assert missing(shares, GROWTH, numerics, set(SETTING.values())) == numerics
+
+
+def test_refined_settings_are_whole_where_they_count_and_never_out_of_range() -> None:
+    """As a user could give them: each may be 1.2 times as large, and no more; of steps there may be twice as many."""
+    numerics = half_space.plan(Scene.load("steel-ball-waves"), {}).numerics
+    most = {key: RANGES[key][1] for key in SETTING.values()}
+    near = numerics.varied(**{key: value / 1.2 for key, value in most.items()} | {"steps": int(most["steps"] / 2.1)})
+    finer = missing({cause: np.array([10.0]) for cause in ORDER}, GROWTH, near, ())
+    assert isinstance(finer.steps, int)
+    assert finer.steps > near.steps
+    assert all(getattr(finer, key) <= value for key, value in most.items())
 
 
 def test_twice_the_steps_take_one_march_more() -> None:

@@ -56,6 +56,16 @@ def test_contact_lasts_as_st_venant_found(ratio: float, duration: float) -> None
     assert end == pytest.approx(duration, abs=6e-4)
 
 
+@pytest.mark.parametrize("mass", [1e-3, 1e-4])
+def test_what_is_light_stays_until_the_first_echo_however_little_it_presses_then(mass: float) -> None:
+    """Its force is exp(-2/mass) by then, which no number holds. The first echo is 1 - 2 s + ... of a fixed end."""
+    pieces, end, separated = flat(1.0, mass).pieces
+    assert (len(pieces), end, separated) == (2, pytest.approx(2.0, rel=1e-12), True)
+    _, end, separated = flat(-1.0, mass).pieces
+    assert separated
+    assert end == pytest.approx(2.0 + mass, rel=1e-6)
+
+
 def test_forces_between_echoes_are_the_textbook_ones() -> None:
     """exp(-t), then exp(-2) + 2 at the first echo on a rod as heavy as the mass."""
     impact = flat(-1.0, 1.0)

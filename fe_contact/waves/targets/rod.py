@@ -237,7 +237,7 @@ def moving(scene: Scene, numerics: WaveNumerics) -> Moving:
         trace=np.ones((1, 1)),
         axial=np.zeros(free.size),
     )
-    push = sparse.csc_matrix(([1.0, -1.0], ([0, free.size], [0, 0])), shape=(free.size + 1, 1))
+    push = sparse.vstack([own.push, sparse.csc_matrix([[-1.0]])]).tocsc()
     pressing = Pressing(push, own.trace, weights=np.ones(1), clearance=np.zeros(1))
     return Moving(with_rigid(scene, own, pressing), scene.velocity, np.zeros(1), endless=False)
 
