@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
@@ -24,23 +23,6 @@ def half_sine(rows: int = 401) -> History:
     t = np.linspace(0.0, 1.0, rows)
     wave = np.sin(np.pi * t)
     return History(t, wave / np.pi, np.cos(np.pi * t), 3.0 * wave, np.sqrt(wave), 0.0 * t)
-
-
-def test_a_law_makes_its_rows_once_and_only_for_who_reads_them(monkeypatch: pytest.MonkeyPatch) -> None:
-    made = list[float]()
-
-    def counted(times: ArrayLike, force: Callable[[Array], Array], tolerance: float) -> Array:
-        made.append(tolerance)
-        return densified(times, force, tolerance)
-
-    monkeypatch.setattr("lumped.laws._assembly.densified", counted)
-    scene = Scene.load("polymer-sphere")
-    found = simulate(laws.get("correspondence").of(scene), scene, 1e-3)
-    assert found.quantities["peak_force"].value
-    assert not made
-    assert found.history is found.history
-    assert len(found.model_ledger)
-    assert made == [1e-3]
 
 
 def test_written_history_reads_back_bit_by_bit(tmp_path: Path) -> None:
