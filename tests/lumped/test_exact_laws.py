@@ -368,3 +368,13 @@ def test_steps_near_the_turn_are_judged_by_the_speed_at_touch(unit: float) -> No
     pace = Adaptive(first=1.0, elements=50, reach=1.0, velocity=unit)
     at_rest = [Instant(float(time), 0.0, 0.0, unit * time**2, 0.0, 0.0) for time in (0.0, 1.0, 2.0)]
     assert pace.error(*at_rest) * pace.tolerance == pytest.approx(1.0 / 6.0 / REST)
+
+
+@pytest.mark.parametrize("power", [1.0, 1.5, 2.0, 3.0, 5.0])
+def test_only_a_dashpot_under_what_is_neither_cone_nor_parabola_needs_another_start(
+    power: float, impact: Callable[..., Scene]
+) -> None:
+    """Its force begins as the power 2/n of the root of time, which is whole for r^1 and r^2 alone of these."""
+    shape = PowerProfile(1.0, power)
+    assert _hereditary.problem_of(impact(1.0, viscosity=0.3, shape=shape)).rises_steeply == (power not in (1.0, 2.0))
+    assert not _hereditary.problem_of(impact(1.0, (0.5,), (0.3,), shape=shape)).rises_steeply
