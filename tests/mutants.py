@@ -339,11 +339,9 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/budget/plan.py", "plan", "2.0 -> "): BEGINS,
     ("fe_contact/budget/plan.py", "plan", "SPARE *"): BEGINS,
     ("lumped/solvers/point/memory.py", "recovering", "2.0 -> 20"): GUESS,
-    ("fe_contact/plastic/path.py", "GIVEN", "4 -> 5"): WORK,
     ("fe_contact/waves/targets/half_space.py", "unit_of", "if scene.motion.impacts"): BEGINS,
     ("fe_contact/steppers/struck.py", "WIDTH", ""): BEGINS,
     ("fe_contact/waves/plan.py", "Cost.of", "0 -> "): WORK,
-    ("fe_contact/indentation.py", "FEWEST_LARGE", "8 -> 9"): BEGINS,
     ("lumped/solvers/point/contact.py", "FAINTEST", "1e-06 -> 1e-07"): WORK,
     ("fe_contact/schemes/galerkin.py", "SERIES", "5 -> 6"): "a term more, of 2e-15 where the series is asked",
 }

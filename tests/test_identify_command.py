@@ -116,7 +116,7 @@ def test_bad_options_write_nothing(
 
 
 @cache
-def pressed(name: str) -> History:
+def reference(name: str) -> History:
     """The impact of a packaged scene by finite elements."""
     return run(Scene.load(name), tolerance=1e-3).history
 
@@ -128,7 +128,7 @@ def test_a_finite_element_impact_tells_its_material(name: str) -> None:
 
     Without noise what is left is the reference's own error, well inside its bar; the glassy spring is told best.
     """
-    history = pressed(name)
+    history = reference(name)
     time = np.linspace(-0.3, 1.5, 500) * history.time[-1]
     found = identify({"reference": Curve(time + 7.0, history.force_at(time))}, name, FREE.split(","))
     for key, true in TRUTH.items():
@@ -140,7 +140,7 @@ def test_a_finite_element_impact_tells_its_material(name: str) -> None:
 @pytest.mark.tenth
 def test_a_layer_tells_poisson_s_ratio() -> None:
     """Bonded to its base it cannot give way sideways, which a half-space can: there E and nu are one number."""
-    history = pressed("polymer-layer")
+    history = reference("polymer-layer")
     time = np.linspace(-0.3, 1.5, 500) * history.time[-1]
     noise = 0.01 * history.force.max() * np.random.default_rng(2).normal(size=time.size)
     free = [*FREE.split(","), "target.material.nu"]

@@ -110,7 +110,7 @@ def _ranking_line(rank: int, one: RankedFit) -> str:
         return f" -  {one.law:16s} {one.reason}"
     left = "noise is left" if one.whiteness.noise else "more than noise is left"
     values = ", ".join(f"{name} {estimate}" for name, estimate in one.fit.parameters.items())
-    known = f"{100.0 * one.fit.normalized_error:7.3g} %, AICc +{one.criterion:.4g}, {left}"
+    known = f"{one.fit.error_in_words:>9s}, AICc +{one.criterion:.4g}, {left}"
     return f"{rank:2d}  {one.law:16s} {known}: {values}"
 
 

@@ -31,7 +31,7 @@ ROOM = 0.5  # of the peak, for what is left, to either side
 def plot_fit(curve: Curve, found: Fit, where: Path) -> tuple[Path, Path]:
     """Write ``fit.svg`` and ``fit.png`` into the folder ``where``; their paths."""
     lines = [f"{name} = {_shown(estimate)}" for name, estimate in found.parameters.items()]
-    lines.append(f"normalized error {100.0 * found.normalized_error:.3g} %{', peak held' if found.peak_held else ''}")
+    lines.append(f"normalized error {found.error_in_words}{', peak held' if found.peak_held else ''}")
     title = f"{found.law}, fitted"
     with style.sheet(where, "fit", title, lines, PANELS, width=TITLE_WIDTH, above=0.34, size=style.COLUMN) as sheet:
         force, left = sheet.figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1.0))

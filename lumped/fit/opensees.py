@@ -124,9 +124,7 @@ def lines(law: Law, scene: Scene, tag: int = 1, language: str = "tcl") -> str:
 def lines_for(history: History, scene: Scene, tag: int = 1, language: str = "tcl") -> str:
     """The lines of the law that fits a scene's force history best, and how well. Raises as `stand_in` does."""
     fitted = best_fit(history, scene)
-    told = (
-        f"# fitted at {scene.velocity:.6g} m/s, normalized error {100.0 * fitted.normalized_error:.3g} %; not elsewhere"
-    )
+    told = f"# fitted at {scene.velocity:.6g} m/s, normalized error {fitted.error_in_words}; not elsewhere"
     return "\n".join([told, lines(between_masses(fitted.law, fitted.scene), fitted.scene, tag, language)])
 
 
@@ -177,7 +175,7 @@ def _departures(law: Law, scene: Scene, found: Fit) -> list[str]:
     """What stands in, and its table, line by line."""
     head = (
         f"OpenSees has no law with a memory: {found.law} stands in for {law.name}, fitted at {scene.velocity:.6g} m/s",
-        f"normalized error {100.0 * found.normalized_error:.3g} %; elsewhere it departs from {law.name} by",
+        f"normalized error {found.error_in_words}; elsewhere it departs from {law.name} by",
         f"{'m/s':>10s} {'peak force':>12s} {'peak depth':>12s} {'duration':>12s} {'restitution':>12s}",
     )
     rows = []

@@ -71,10 +71,15 @@ class Fit:
     def summary(self) -> str:
         """Every parameter with its interval, one a line."""
         held = ", peak held" if self.peak_held else ""
-        lines = [f"{self.law}: normalized error {error_in_words(self.normalized_error)} on {self.points} points{held}"]
+        lines = [f"{self.law}: normalized error {self.error_in_words} on {self.points} points{held}"]
         lines += [f"{name:{WIDTH}s} {estimate}" for name, estimate in self.parameters.items()]
         lines += [f"{name:{WIDTH}s} {value:.6g} held" for name, value in self.held.items()]
         return "\n  ".join([*lines, f"force at half depth, {self.depth:.4g} m: {self.force_at_depth}"])
+
+    @property
+    def error_in_words(self) -> str:
+        """The normalized error; see :func:`error_in_words`."""
+        return error_in_words(self.normalized_error)
 
     @property
     def values(self) -> dict[str, float]:

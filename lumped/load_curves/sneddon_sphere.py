@@ -13,8 +13,10 @@ from lumped.load_curves.half_space import HalfSpaceCurve
 from lumped.numbers import Array, Real
 
 # u^2 - r in POWERS of r = u tanh u: below SHALLOW what follows is less than rounding.
-TERMS = (1 / 3, 4 / 45, 16 / 945, 16 / 14175, -64 / 93555, -69248 / 212837625, -512 / 8292375, 211712 / 32564156625)
-SERIES, POWERS = np.array(TERMS), np.arange(2.0, 10.0)
+SERIES = np.array(
+    [1 / 3, 4 / 45, 16 / 945, 16 / 14175, -64 / 93555, -69248 / 212837625, -512 / 8292375, 211712 / 32564156625]
+)
+POWERS = np.arange(2.0, 10.0)
 SHALLOW = 0.05  # rounding: of r, the depth over the radius; above it u - tanh u keeps its digits as a difference
 TINY = 1e-300  # in place of zero, in a quotient
 
@@ -37,14 +39,14 @@ class SneddonSphere(HalfSpaceCurve):
     def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
         """F/E*, m^2, and 2 a, m."""
         ratio = self._ratio(depth)
-        t, rest = _tanh(ratio)
+        t, rest = _tanh_and_rest(ratio)
         return self.radius**2 * (rest + ratio * t), 2.0 * self.radius * t
 
     def contact_radius(self, depth: ArrayLike) -> Real:
         """a = R tanh u with u tanh u = depth/R, m."""
         if isinstance(depth, float):
             return self.radius * math.tanh(_angle(max(depth, 0.0) / self.radius, math.tanh))
-        return self.radius * _tanh(self._ratio(depth))[0]
+        return self.radius * _tanh_and_rest(self._ratio(depth))[0]
 
     def depth(self, contact_radius: ArrayLike) -> Real:
         """a artanh(a/R), m; infinite at a = R, nan beyond."""
@@ -65,7 +67,7 @@ class SneddonSphere(HalfSpaceCurve):
         return np.asarray(np.maximum(depth, 0.0) / self.radius)
 
 
-def _tanh(ratio: Array) -> tuple[Array, Array]:
+def _tanh_and_rest(ratio: Array) -> tuple[Array, Array]:
     """tanh u and u - tanh u with u tanh u = ratio >= 0, both to full relative precision."""
     if not np.maximum.reduce(ratio, axis=None, initial=0.0) >= SHALLOW:  # sooner told than by the array's own method
         return _shallow(ratio)
