@@ -50,6 +50,7 @@ LONG = (
     "polymer-o-ring", "polymer-half-plane", "polymer-layer-line", "rod-in-ring", "two-finite-spheres", "bar",
     "steel-ball-waves", "rod",
 )  # fmt: skip
+OWN = {"bar": 0.1}  # of a history that jumps, as its file has it
 LAWS = ("ting", "correspondence", "mdr")
 
 
@@ -98,7 +99,7 @@ def _same(mine: Quantity, other: Quantity, unit: float, bars: float) -> bool:
 
 @pytest.mark.parametrize("name", [*SCENES, *(pytest.param(name, marks=pytest.mark.tenth) for name in LONG)])
 def test_finite_elements_know_no_unit(name: str) -> None:
-    ours, theirs = (fe_contact.run(scene, 1e-2) for scene in both(name))
+    ours, theirs = (fe_contact.run(scene, OWN.get(name, 1e-2)) for scene in both(name))
     assert ours.converged == theirs.converged
     assert ours.work == theirs.work
     assert not differences(ours, theirs, bars=1e-4)
