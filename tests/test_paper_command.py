@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 
 from fe_contact.cli import main
+from fe_contact.studies.validate.paper import FIGURES as FIGURES_OF_REPORT
+from fe_contact.studies.validate.paper import LISTINGS
 from lumped.paper import Examples, claims, recompute
 from lumped.paper.rules import AGREES, DIFFERS, UNDECIDED, UNKNOWN, VERDICTS
 from lumped.result import model_ledger as yielding
@@ -108,6 +110,14 @@ def test_the_curves_of_a_figure_stand_beside_it(written: tuple[Path, str]) -> No
         assert 1e-6 * np.trapezoid(kelvin[1], kelvin[0]) == pytest.approx(momentum, rel=1e-4)
     shared = {(row["panel"], row["x_is"]) for row in rows(written[0] / "fig7.csv")}
     assert shared == {(f"{letter} R2 = {R2}", "time, µs") for letter, R2 in zip("abcd", R2_OF_FIG7, strict=True)}
+
+
+def test_what_the_report_shows_is_there(written: tuple[Path, str]) -> None:
+    names = {path.name for path in written[0].iterdir()}
+    for figure in FIGURES_OF_REPORT:
+        assert {f"{figure.name}.svg", *figure.tables} <= names
+    for listing in LISTINGS:
+        assert {column.key for column in listing.columns} <= rows(written[0] / listing.table)[0].keys()
 
 
 def curve_of(found: list[dict[str, str]], name: str) -> tuple[list[float], list[float]]:
