@@ -324,6 +324,7 @@ def browser() -> Iterator[Any]:
         yield one
 
 
+A4 = 718  # pixels between margins of a centimetre
 FIGURES = """
 [...document.querySelectorAll(".canvas svg, .chart, .gallery svg")].map(one => {
   const box = one.getBoundingClientRect(); return box.width > 40 && box.height > 15; })
@@ -405,7 +406,9 @@ def reads_values_off(browser: Any) -> None:
 
 
 def prints(browser: Any) -> None:
-    """On paper there are no buttons to press, and nothing is cut off."""
+    """On paper there are no buttons to press, nothing is cut off, and no table is wider than a page."""
     browser.prefer("light", "print")
+    browser.resize(A4)
+    assert browser.run("document.documentElement.scrollWidth") <= A4
     assert browser.run("getComputedStyle(document.querySelector('header')).display") == "none"
     assert browser.run("getComputedStyle(document.querySelector('.scroll')).maxHeight") == "none"
