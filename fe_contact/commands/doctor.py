@@ -135,8 +135,8 @@ def known_geometries() -> str:
     where = folder()
     if where is None:
         return "off: every geometry is meshed anew"
-    if not base.writable(where):
-        raise Broken(f"{where} cannot be written; cure: {PLACE}=FOLDER, another one, or {PLACE}=off")
+    if reason := base.unwritable(where):
+        raise Broken(f"{where}: {reason}; cure: {PLACE}=FOLDER, another one, or {PLACE}=off")
     return f"{where} can be written, up to {most_bytes() / 2**20:g} MB"
 
 
