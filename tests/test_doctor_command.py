@@ -12,6 +12,7 @@ import pytest
 
 from fe_contact.cli import main
 from fe_contact.commands import doctor
+from lumped.result.result import provenance
 from meshes.errors import APT_LINE
 
 
@@ -67,3 +68,4 @@ def test_the_version_names_what_numbers_depend_on(capsys: pytest.CaptureFixture[
     for package in ("fe-contact", "numpy", "scipy", "scikit-fem", "meshio", "gmsh"):
         version = importlib.metadata.version(package)
         assert f"{package} {version}" in said
+        assert provenance()[package] == version, "as every result says too"
