@@ -210,7 +210,7 @@ def plot(found: object, out: str | Path) -> tuple[Path, ...]:
 
     Raises
     ------
-    BadInput for anything else; a History has a ``plot()`` of its own.
+    BadInput for anything else; a Result, History, Indentation or Fit has a ``plot()`` of its own, for a notebook.
     """
     from pathlib import Path
 

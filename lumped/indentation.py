@@ -19,7 +19,7 @@ from lumped.scene.indenter import Indenter
 from lumped.schema import Table
 from lumped.schema.csv_file import write_columns
 from lumped.schema.json_file import plain, write_json
-from lumped.schema.shown import Picture, curves
+from lumped.schema.shown import Picture, curves, html_table
 from lumped.targets.sphere import SphereTarget
 
 SCHEMA = "fe-contact/indentation/1"
@@ -145,6 +145,11 @@ class Indentation:
 
     def __repr__(self) -> str:
         return self.summary()
+
+    def _repr_html_(self) -> str:
+        table = zip(self.depth, self.force, self.force_error, strict=True)
+        rows = [(f"{depth:.6g} m", f"{force:.6g} +- {error:.1e} N") for depth, force, error in table]
+        return html_table(("depth", "force"), [*rows, *self.quantities.items()]) + self.plot().svg
 
     def plot(self) -> Picture:
         """Force, N, over depth, m, as a notebook shows it or ``.write("force.svg")``."""

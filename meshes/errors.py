@@ -34,7 +34,7 @@ class MeshTooFine(MeshError):
 
 
 class GmshMissing(MeshError):
-    """gmsh is installed but a system library it needs is not (bare Debian lacks libGLU and friends)."""
+    """gmsh, or a system library that it needs, is not installed (bare Debian lacks libGLU and friends)."""
 
-    def __init__(self, reason: str) -> None:
-        super().__init__(f"gmsh cannot be loaded ({reason}); cure: {APT_LINE}")
+    def __init__(self, reason: str, cure: str = APT_LINE) -> None:
+        super().__init__(f"gmsh cannot be loaded ({reason}); cure: {cure}")

@@ -47,6 +47,8 @@ def _ignore_closed_pipes() -> None:
 def _load() -> Any:
     try:
         import gmsh
+    except ModuleNotFoundError as failure:
+        raise GmshMissing(str(failure), "pip install gmsh") from failure
     except (ImportError, OSError) as failure:
         raise GmshMissing(str(failure).splitlines()[0]) from failure
     return gmsh

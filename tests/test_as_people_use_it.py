@@ -137,6 +137,10 @@ def test_a_law_is_fitted_from_what_has_a_force(result: Result, tmp_path: Path) -
     found = [fe_contact.fit(curve, "hertz", "polymer-sphere") for curve in (result.history, tmp_path / "curve.csv")]
     assert len(repr(found[0]).splitlines()) <= 4
     assert found[0].parameters["k"].value == pytest.approx(found[1].parameters["k"].value, rel=1e-4)
+    shown = found[1]._repr_html_()
+    assert f"{found[1].parameters['k'].value:.6g}" in shown
+    assert shown.count("<polyline") == 2, "the curve and the law"
+    ElementTree.fromstring(f"<div>{shown}</div>")
 
 
 @pytest.mark.tenth
@@ -146,7 +150,7 @@ def test_an_indentation_is_that_of_the_command_whatever_it_is_asked_of() -> None
     ]
     assert np.array_equal(found[0].force, found[1].force)
     assert len(repr(found[0]).splitlines()) < 10
-    assert found[0].plot().svg.count("<polyline") == 1
+    assert found[0]._repr_html_().count("<polyline") == 1
     assert abs(found[0].quantities["alpha"].value - 1.5) <= found[0].quantities["alpha"].error + 1e-3
 
 

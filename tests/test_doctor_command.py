@@ -12,6 +12,7 @@ import pytest
 
 from fe_contact.cli import main
 from fe_contact.commands import doctor
+from lumped.result.result import provenance
 from meshes.errors import APT_LINE
 
 
@@ -41,20 +42,21 @@ def test_broken_parts_are_all_named_with_their_cures(
             raise OSError("libGLU.so.1: cannot open shared object file")
         return real(name, *rest, **more)
 
-    def no_scipy(name: str) -> str:
-        if name == "scipy":
+    def no_jinja2_and_an_old_scipy(name: str) -> str:
+        if name == "jinja2":
             raise importlib.metadata.PackageNotFoundError(name)
-        return version(name)
+        return "1.9.3rc1" if name == "scipy" else version(name)
 
     (tmp_path / "file").touch()
     monkeypatch.setattr(builtins, "__import__", no_gmsh)
-    monkeypatch.setattr(importlib.metadata, "version", no_scipy)
+    monkeypatch.setattr(importlib.metadata, "version", no_jinja2_and_an_old_scipy)
     monkeypatch.setenv("FE_CONTACT_CACHE", str(tmp_path / "file"))
     assert main(["doctor", "--json"]) == 1
     checks = found(capsys)
     assert not any(one["well"] for one in checks.values())
     assert APT_LINE in checks["meshes"]["says"]
-    assert "scipy" in checks["packages"]["says"]
+    assert "jinja2 is missing" in checks["packages"]["says"]
+    assert "scipy is 1.9.3rc1, older than 1.16" in checks["packages"]["says"]
     assert "FE_CONTACT_CACHE" in checks["cache"]["says"]
 
 
@@ -66,3 +68,4 @@ def test_the_version_names_what_numbers_depend_on(capsys: pytest.CaptureFixture[
     for package in ("fe-contact", "numpy", "scipy", "scikit-fem", "meshio", "gmsh"):
         version = importlib.metadata.version(package)
         assert f"{package} {version}" in said
+        assert provenance()[package] == version, "as every result says too"

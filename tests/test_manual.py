@@ -104,6 +104,13 @@ def test_no_link_leads_into_nothing_and_nothing_is_loaded_from_elsewhere(
                 assert not anchor or anchor in collected[file].anchors, (page, link)
 
 
+def test_what_may_be_wider_than_a_page_is_scrolled_by_keys_too(site: Path) -> None:
+    for page in site.glob("*.html"):
+        text = page.read_text(encoding="utf-8")
+        assert "<pre>" not in text
+        assert text.count("<table>") == text.count('<div class="wide" tabindex="0"><table>')
+
+
 def test_every_section_can_be_found(site: Path, collected: dict[str, Collected]) -> None:
     text = (site / "sections.js").read_text(encoding="utf-8")
     sections = json.loads(text.removeprefix("const SECTIONS = ").removesuffix(";\n"))

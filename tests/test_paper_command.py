@@ -4,18 +4,23 @@ from __future__ import annotations
 
 import csv
 import json
+import math
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from fe_contact.cli import main
+from fe_contact.studies.validate.paper import FIGURES as FIGURES_OF_REPORT
+from fe_contact.studies.validate.paper import LISTINGS
 from lumped.paper import Examples, claims, recompute
 from lumped.paper.rules import AGREES, DIFFERS, UNDECIDED, UNKNOWN, VERDICTS
 from lumped.result import model_ledger as yielding
 
 TABLES = {"paper", "assumptions", "misprints", "grid"}
-FIGURES = {f"fig{number}.{kind}" for number in (6, 7, 8, 9, 10, 15) for kind in ("svg", "png")}
+R2_OF_FIG7 = ("200 µs", "20 µs", "2 µs", "200 ns")
+FIGURES = {f"fig{number}.{kind}" for number in (6, 7, 8, 9, 10, 15) for kind in ("svg", "png", "csv")}
 
 
 @pytest.fixture(scope="module")
@@ -88,6 +93,37 @@ def test_the_grid_holds_both_laws(written: tuple[Path, str]) -> None:
     for row in found:
         assert float(row["ting_peak_force_N"]) == pytest.approx(float(row["correspondence_peak_force_N"]), rel=1e-5)
         assert float(row["ting_duration_s"]) > float(row["correspondence_duration_s"])
+
+
+def test_the_curves_of_a_figure_stand_beside_it(written: tuple[Path, str]) -> None:
+    """Kelvin's take the momentum m v (1 + e) from the ball, with the e that (7) gives where nothing pulls."""
+    steel = Examples.load({}).steel
+    found = rows(written[0] / "fig6.csv")
+    assert {(row["panel"], row["x_is"], row["y_is"]) for row in found} == {("a", "time, µs", "force, N")}
+    for e in steel.restitutions:
+        kelvin, jankowski = (curve_of(found, f"{law}, e = {e:g}") for law in ("Kelvin", "Jankowski"))
+        assert max(kelvin[1]) == pytest.approx(steel.measured_peak, rel=1e-4)
+        assert max(jankowski[1]) == pytest.approx(steel.measured_peak, rel=1e-4)
+        xi = -math.log(e) / math.hypot(math.pi, math.log(e))
+        obtained = math.exp(-2.0 * xi * math.acos(xi) / math.sqrt(1.0 - xi**2))
+        momentum = steel.mass * steel.velocity * (1.0 + obtained)
+        assert 1e-6 * np.trapezoid(kelvin[1], kelvin[0]) == pytest.approx(momentum, rel=1e-4)
+    shared = {(row["panel"], row["x_is"]) for row in rows(written[0] / "fig7.csv")}
+    assert shared == {(f"{letter} R2 = {R2}", "time, µs") for letter, R2 in zip("abcd", R2_OF_FIG7, strict=True)}
+
+
+def test_what_the_report_shows_is_there(written: tuple[Path, str]) -> None:
+    names = {path.name for path in written[0].iterdir()}
+    for figure in FIGURES_OF_REPORT:
+        assert {f"{figure.name}.svg", *figure.tables} <= names
+    for listing in LISTINGS:
+        assert {column.key for column in listing.columns} <= rows(written[0] / listing.table)[0].keys()
+
+
+def curve_of(found: list[dict[str, str]], name: str) -> tuple[list[float], list[float]]:
+    """Its x and y."""
+    mine = [row for row in found if row["curve"] == name]
+    return [float(row["x"]) for row in mine], [float(row["y"]) for row in mine]
 
 
 def test_a_changed_input_changes_what_depends_on_it(

@@ -231,6 +231,13 @@ def made_up(row: TableRow, alpha: float = 0.0, factor: float = 1.0, bar: float =
     )
 
 
+def test_a_trial_says_its_numbers_in_a_line() -> None:
+    said = repr(made_up(ROWS["sphere"]))
+    assert said.startswith("Trial of row 4, rigid sphere to elastic plane: alpha 1.5 +- ")
+    assert all(f"E* at nu = {nu:g} " in said for nu in RATIOS)
+    assert "array" not in said
+
+
 def test_the_rule_of_the_verdict() -> None:
     row = ROWS["punch"]
     assert verdict(made_up(row)).word == HOLDS

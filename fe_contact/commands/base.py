@@ -177,23 +177,27 @@ def folder(args: argparse.Namespace, command: str, name: str) -> Path:
     return where
 
 
-def check_writable(where: Path) -> None:
+def check_writable(where: Path, option: str = "--out") -> None:
     """Raise BadInput for a folder in which nothing can be written."""
-    if not writable(where):
-        found = "it is a file; " if where.is_file() else ""
-        raise BadInput(Fault("--out", str(where), f"{found}accepted: a folder that can be written, its name printable"))
+    if reason := unwritable(where):
+        accepted = "accepted: a folder that can be written, its name printable"
+        raise BadInput(Fault(option, str(where), f"{reason}; {accepted}"))
 
 
-def writable(where: Path) -> bool:
-    """Whether a folder is there, or can be made, in which files can be made."""
+def unwritable(where: Path) -> str:
+    """Why no file can be made in a folder, whether it is there or has to be made; empty where one can."""
     try:
         with suppress(FileNotFoundError):  # it can be made in the folder above it
             where.lstat()
+        if where.is_file():
+            return "it is a file"
         standing = next(place for place in (where, *where.absolute().parents) if os.path.lexists(place))
         with TemporaryFile(dir=standing):
-            return str(where).isprintable()
-    except (OSError, ValueError):  # a name too long, or with a null byte; a file where a folder should be
-        return False
+            return "" if str(where).isprintable() else "no printable name"
+    except OSError as failure:  # a name too long; a file where a folder should be
+        return f"cannot be written: {failure.strerror}"
+    except ValueError:  # a null byte
+        return "no name of a folder"
 
 
 def _part_of_a_name(text: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import platform
+import re
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -69,11 +70,39 @@ class Broken(FeContactError):
 
 
 def packages() -> str:
-    """All of them are there. Raises Broken."""
-    missing = [name for name, said in versions().items() if said == "missing"]
-    if missing:
-        raise Broken(f"missing: {', '.join(missing)}; {REINSTALL}")
-    return "all there"
+    """All that this suite requires is there, and new enough. Raises Broken with every one that is not."""
+    said = {name: _unsuited(name, least) for name, least in _required().items()}
+    wrong = [f"{name} {why}" for name, why in said.items() if why]
+    if wrong:
+        raise Broken(f"{', '.join(wrong)}; {REINSTALL}")
+    return "all there, none too old"
+
+
+def _required() -> dict[str, str]:
+    """Least versions by names, as pyproject.toml says; where only the source is there, what numbers may depend on."""
+    from importlib.metadata import PackageNotFoundError, requires
+
+    try:
+        lines = requires("fe-contact") or []
+    except PackageNotFoundError:
+        return dict.fromkeys(PACKAGES, "0")
+    return dict(line.split(">=") for line in lines if ";" not in line)
+
+
+def _unsuited(name: str, least: str) -> str:
+    """What is wrong with an installed package; empty where nothing is."""
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        found = version(name)
+    except PackageNotFoundError:
+        return "is missing"
+    return f"is {found}, older than {least}" if _numbers(found) < _numbers(least) else ""
+
+
+def _numbers(version: str) -> list[int]:
+    """Those at its beginning: [3, 10, 8] of 3.10.8rc1."""
+    return [int(number) for number in re.sub(r"[^\d.].*", "", version).split(".") if number]
 
 
 def mesher() -> str:
@@ -106,8 +135,8 @@ def known_geometries() -> str:
     where = folder()
     if where is None:
         return "off: every geometry is meshed anew"
-    if not base.writable(where):
-        raise Broken(f"{where} cannot be written; cure: {PLACE}=FOLDER, another one, or {PLACE}=off")
+    if reason := base.unwritable(where):
+        raise Broken(f"{where}: {reason}; cure: {PLACE}=FOLDER, another one, or {PLACE}=off")
     return f"{where} can be written, up to {most_bytes() / 2**20:g} MB"
 
 
@@ -122,6 +151,8 @@ CHECKS: Mapping[str, Callable[[], str]] = {
 def _tried(name: str, check: Callable[[], str]) -> Finding:
     try:
         return Finding(name, True, check())
+    except ModuleNotFoundError as failure:
+        return Finding(name, False, f"{failure.name} is not installed; {REINSTALL}")
     except (FeContactError, MeshError, ImportError, OSError) as failure:
         return Finding(name, False, str(failure))
 

@@ -22,8 +22,7 @@ def _export(args: argparse.Namespace) -> int:
     if args.check or args.update:
         raise BadInput(Fault("--export", "", "writes what is published; accepted: without --check and --update"))
     form, where = checked_format(args.format), Path(args.export)
-    if not base.writable(where):
-        raise BadInput(Fault("--export", args.export, "accepted: a folder that can be written"))
+    base.check_writable(where, "--export")
     references = published(checked(_names(args)))
     progress = base.progress_of(args)
     content = publish(where, lambda folder: write_for_others(references, form, folder, progress), RECORD)

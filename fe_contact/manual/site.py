@@ -77,11 +77,12 @@ class Page:
 
     @property
     def body(self) -> str:
-        """It in HTML; links to other pages lead to theirs."""
+        """It in HTML; links to other pages lead to theirs; what may be wider than the page is scrolled by keys too."""
         made = markdown.markdown(self.text, extensions=[*EXTENSIONS])
         return (
             LINK.sub(r'href="\1.html\2"', made)
-            .replace("<table>", '<div class="wide"><table>')
+            .replace("<pre>", '<pre tabindex="0">')
+            .replace("<table>", '<div class="wide" tabindex="0"><table>')
             .replace("</table>", "</table></div>")
         )
 

@@ -54,11 +54,21 @@ MEMORY_KEY = (
 
 
 def plot_paper(study: PaperStudy, where: Path) -> tuple[Path, ...]:
-    """Write ``fig6`` to ``fig10`` and ``fig15`` as SVG and PNG into ``where``; their paths. Raises NotReached."""
+    """Write ``fig6`` to ``fig10`` and ``fig15`` as SVG and PNG into ``where``; their paths. Raises NotReached.
+
+    A CSV of each holds the curves that it draws.
+    """
     with style.look():
         steel = (*_fig6(study, where), *_grid(study, 7, where), *_grid(study, 8, where))
         concrete = (*_fig9(study.examples, where), *_fig10(study.examples, where))
         return (*steel, *concrete, *_fig15(study.examples, where))
+
+
+def _saved(figure: Figure, where: Path, name: str) -> tuple[Path, Path]:
+    """The chart, and beside it what it draws."""
+    paths = style.save(figure, where, name)
+    style.write_curves(figure, where, name)
+    return paths
 
 
 def _fig6(study: PaperStudy, where: Path) -> tuple[Path, Path]:
@@ -77,7 +87,7 @@ def _fig6(study: PaperStudy, where: Path) -> tuple[Path, Path]:
         "paper does not print."
     ]
     style.heading(figure, "Fig. 6 drawn again: the steel ball", lines, TITLE_WIDTH)
-    return style.save(figure, where, "fig6")
+    return _saved(figure, where, "fig6")
 
 
 def _curves_6(steel: Steel) -> list[tuple[str, Result, Look]]:
@@ -97,11 +107,11 @@ def _damped(axes: Axes, steel: Steel, law: str, time: float, force: float) -> No
     """The curves of a damped law, times and forces of the ball's in other units; along their falling sides their e."""
     colour, share = DAMPED[law]
     level, es = share * steel.measured_peak, steel.restitutions
+    axes.plot([], [], color=colour, label=f"{law.capitalize()}, e = {es[0]:g} to {es[-1]:g}", **THIN)
     for e in es:
         history = damped_of_peak(steel, law, e).history
-        name = f"{law.capitalize()}, e = {es[0]:g} to {es[-1]:g}" if e == es[0] else None
         drawn = history.resampled(np.linspace(0.0, history.time[-1], POINTS))
-        axes.plot(time * drawn.time, force * drawn.force, color=colour, label=name, **THIN)
+        axes.plot(time * drawn.time, force * drawn.force, color=colour, label=f"_{law.capitalize()}, e = {e:g}", **THIN)
         falling = history.force.argmax() + np.flatnonzero(np.diff(history.force[history.force.argmax() :]) < 0.0)
         place = np.interp(-level, -history.force[falling], history.time[falling])
         axes.text(time * place, force * level, f"{e:g}", color=colour, **ON_CURVE)
@@ -124,13 +134,14 @@ def _grid(study: PaperStudy, number: int, where: Path) -> tuple[Path, Path]:
     figure.legend(handles=LAW_KEY, loc="lower center", ncols=2)
     lines = ["The law of the paper, and what it approximates in the rebound; until the deepest instant they are one."]
     style.heading(figure, f"Fig. {number} drawn again: the steel ball, {varied} varied", lines, TITLE_WIDTH)
-    return style.save(figure, where, f"fig{number}")
+    return _saved(figure, where, f"fig{number}")
 
 
 def _panel(axes: Axes, rows: Sequence[GridRow], varied: str) -> None:
     for row, colour in zip(rows, style.CYCLE, strict=False):
-        _plot(axes, row.clipped, color=colour, label=f"{varied} = {_value(row, varied)}")
-        _plot(axes, row.exact, color=colour, **DASHED)
+        name = f"{varied} = {_value(row, varied)}"
+        _plot(axes, row.clipped, color=colour, label=name)
+        _plot(axes, row.exact, color=colour, label=f"_exact (Ting), {name}", **DASHED)
     axes.set_ylim(0.0, None)
     axes.legend(loc="upper right", borderaxespad=0.1, labelspacing=0.3)
 
@@ -165,7 +176,7 @@ def _fig9(examples: Examples, where: Path) -> tuple[Path, Path]:
         "not print, nor does its text hold the measured curve."
     ]
     style.heading(figure, f"Fig. 9 drawn again: concrete at {velocity:g} m/s", lines, TITLE_WIDTH)
-    return style.save(figure, where, "fig9")
+    return _saved(figure, where, "fig9")
 
 
 def _over(steel: Steel, whole: History, momentum: float, share: float) -> tuple[float, float]:
@@ -204,7 +215,7 @@ def _fig10(examples: Examples, where: Path) -> tuple[Path, Path]:
         f"{100 * concrete.jankowski_peak_error:g} %. Cut, the striker leaves as fast as uncut."
     ]
     style.heading(figure, f"Fig. 10 drawn again: concrete at {fast:g} m/s", lines, TITLE_WIDTH)
-    return style.save(figure, where, "fig10")
+    return _saved(figure, where, "fig10")
 
 
 def _fig15(examples: Examples, where: Path) -> tuple[Path, Path]:
@@ -228,7 +239,7 @@ def _fig15(examples: Examples, where: Path) -> tuple[Path, Path]:
         "finite elements the depth of its tip falls so, from less."
     ]
     style.heading(figure, "Fig. 15 as numbers: memory between contacts", lines, TITLE_WIDTH)
-    return style.save(figure, where, "fig15")
+    return _saved(figure, where, "fig15")
 
 
 def _dented(examples: Examples) -> list[DentedSurface]:
@@ -243,13 +254,14 @@ def _recovery(axes: Axes, dent: DentedSurface, colour: str) -> None:
     times = np.linspace(0.0, dent.parting + SHOWN * dent.R2, TIMES)
     away = np.linspace(dent.parting, times[-1], TIMES)
     deepest, ball = dent.first.peak_depth, dent.ball(away)
-    axes.plot(MICRO * times, dent.surface(times) / deepest, color=colour)
-    axes.plot(MICRO * away[ball > 0.0], ball[ball > 0.0] / deepest, color=colour, **DASHED)
+    names = (f"{key.get_label()}, R1 = {dent.R1:g}" for key in MEMORY_KEY)
+    axes.plot(MICRO * times, dent.surface(times) / deepest, color=colour, label=next(names))
+    axes.plot(MICRO * away[ball > 0.0], ball[ball > 0.0] / deepest, color=colour, label=next(names), **DASHED)
     found = fe(dent.scene, {"tolerance": FE_TOLERANCE})
     assert found.recovery is not None  # of a half-space that remembers
     since, deepest = float(found.history.time[-1]) + found.recovery.time, float(found.history.depth.max())
     shown = since <= times[-1]
-    axes.plot(MICRO * since[shown], found.recovery.depth[shown] / deepest, color=colour, **DOTS)
+    axes.plot(MICRO * since[shown], found.recovery.depth[shown] / deepest, color=colour, label=next(names), **DOTS)
 
 
 def _second(axes: Axes, dent: DentedSurface, colour: str) -> None:

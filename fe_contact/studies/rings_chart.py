@@ -36,7 +36,7 @@ STRUCK_LINES = [
 def plot_rings(curves: Sequence[RingCurve], where: Path, impacts: Sequence[RingStruck] = ()) -> tuple[Path, ...]:
     """Write ``ring.svg`` and ``ring.png`` into the folder ``where``, of impacts ``fig12`` too; their paths.
 
-    Raises NotReached.
+    ``fig12.csv`` holds the curves that it draws. Raises NotReached.
     """
     return (*_pressed(curves, where), *(_fig12(impacts, where) if impacts else ()))
 
@@ -49,6 +49,7 @@ def _fig12(impacts: Sequence[RingStruck], where: Path) -> tuple[Path, Path]:
         for axes, letter, one in zip(panels, "ab", fastest.values(), strict=False):
             _struck(axes, one)
             style.label(axes, letter, f"{one.ring} at {style.readable(one.velocity, 'm/s', 3)}")
+    style.write_curves(sheet.figure, where, "fig12")
     return sheet.paths
 
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from string import ascii_lowercase
 from typing import Any
 
 import matplotlib
@@ -17,6 +18,8 @@ from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.gridspec import GridSpec
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from lumped.schema.csv_file import write_csv
 
 COLUMN, PAGE = 3.5, 7.2  # widths of a paper's column and page, in
 TITLE_SIZE, TITLE_LETTERS = 9.5, 11.5  # pt; letters of that size in an inch
@@ -66,6 +69,8 @@ RC: Any = {
     "svg.hashsalt": "fe-contact",
     "path.simplify": False,
 }
+UNNAMED = "_child"  # how matplotlib begins the name of a line that was given none
+DRAWN = "{:.7g}"  # look: of a point
 PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}  # by power of ten
 
 
@@ -88,6 +93,29 @@ def save(figure: Figure, where: Path, name: str) -> tuple[Path, Path]:
     figure.savefig(paths[0], metadata={"Date": None})
     figure.savefig(paths[1], metadata={"Software": None})
     return paths
+
+
+def write_curves(figure: Figure, where: Path, name: str) -> None:
+    """Write ``name.csv``: what a figure draws, a row a point of every curve that has a name, in the axes' units.
+
+    A name that begins with ``_`` stands in no legend.
+    """
+    rows = list[tuple[object, ...]]()
+    for letter, axes in zip(ascii_lowercase, figure.axes, strict=False):
+        panel = f"{letter} {axes.get_title('left').partition('$  ')[2]}".strip()
+        meanings = _shared(figure, axes, "xlabel"), _shared(figure, axes, "ylabel")
+        for line in axes.lines:
+            curve = str(line.get_label())
+            if not curve.startswith(UNNAMED):
+                points = np.asarray(line.get_xydata())
+                rows += [(panel, curve.removeprefix("_"), *meanings, *map(DRAWN.format, point)) for point in points]
+    write_csv(where / f"{name}.csv", ("panel", "curve", "x_is", "y_is", "x", "y"), rows)
+
+
+def _shared(figure: Figure, axes: Axes, label: str) -> str:
+    """What an axis says, or where it leaves that to its neighbours, they."""
+    said = [one for panel in (axes, *figure.axes) if (one := str(panel.properties()[label]))]
+    return said[0]
 
 
 def prefixed(largest: float, unit: str) -> tuple[float, str]:

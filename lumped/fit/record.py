@@ -11,12 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.result.folder import publish
-from lumped.result.history import History
+from lumped.result.history import ForceOverTime, History
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.schema import Table
 from lumped.schema.csv_file import write_csv
 from lumped.schema.json_file import plain, write_json
+from lumped.schema.shown import Picture, curves, html_table
 
 Array = NDArray[np.float64]
 SCHEMA, RECORD = "fe-contact/fit/1", "fit.json"
@@ -47,10 +48,11 @@ class Fit:
     `parameters` are the free ones, in the order of `covariance`, SI units, and `correlation`, a ratio, both (p, p);
     `held` the others that were given. `normalized_error` is "(20)", "(21)". `depth` is half of the greatest depth,
     m, and `force_at_depth` the force there in the approach: known well even where stiffness and exponent are not.
-    `scene` holds the fitted law, `result` is its impact, `history` that on the curve's clock.
+    `scene` holds the fitted law, `result` is its impact, `history` that on the clock of the `curve` it was fitted to.
     """
 
     law: str
+    curve: ForceOverTime
     scene: Scene
     result: Result
     history: History
@@ -67,6 +69,15 @@ class Fit:
 
     def __repr__(self) -> str:
         return self.summary()
+
+    def _repr_html_(self) -> str:
+        table = html_table((self.law, "value, 95 % interval"), {**self.parameters, **self.held}.items())
+        return f"{table}<p>normalized error {self.error_in_words}</p>{self.plot().svg}"
+
+    def plot(self) -> Picture:
+        """Force, N, over time, s, of the curve and of the law, as a notebook shows it or ``.write("fit.svg")``."""
+        drawn = {"curve": self.curve, self.law: self.history}
+        return curves({name: (one.time, one.force) for name, one in drawn.items()}, "time, s", "force, N")
 
     def summary(self) -> str:
         """Every parameter with its interval, one a line."""

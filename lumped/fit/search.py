@@ -101,6 +101,7 @@ def search(
     failed = () if result.converged else (result.message,)
     return Fit(
         law=law,
+        curve=curve,
         scene=fitted,
         result=result,
         history=history,

@@ -396,7 +396,7 @@ def provenance() -> Mapping[str, str]:
     from importlib.metadata import PackageNotFoundError, version
 
     found = {"python": platform.python_version(), "platform": platform.platform(terse=True)}
-    for package in ("fe-contact", "numpy", "scipy"):
+    for package in ("fe-contact", "numpy", "scipy", "scikit-fem", "meshio", "gmsh"):
         try:
             found[package] = version(package)
         except PackageNotFoundError:

@@ -14,10 +14,11 @@ import pytest
 
 from fe_contact.cli import main
 from fe_contact.commands import COMMANDS
+from fe_contact.commands.base import check_writable
 from fe_contact.reference import check
 from fe_contact.steppers import scaled_surface
 from fe_contact.targets import half_space
-from lumped import Scene, laws
+from lumped import BadInput, Scene, laws
 from lumped.schema.files import SCENES
 from meshes import session
 from meshes.errors import APT_LINE, GmshMissing
@@ -192,6 +193,17 @@ def test_an_output_that_cannot_be_written_is_bad_input(
     assert exit_code("run", str(scene), "--method", "mdr", "--out", str(occupied)) == 2
     assert len(capsys.readouterr().err.strip().splitlines()) == 1
     assert occupied.read_text() == "here already"
+
+
+@pytest.mark.parametrize(
+    ("where", "why"),
+    [("file", "it is a file"), ("file/sub", "cannot be written: Not a directory"), ("a\nb", "no printable name"),
+     ("n" * 300, "cannot be written: File name too long"), ("a\0b", "no name of a folder")],
+)  # fmt: skip
+def test_a_folder_that_cannot_be_written_says_why(where: str, why: str, tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(BadInput, match=why):
+        check_writable(tmp_path / where)
 
 
 @pytest.mark.parametrize(

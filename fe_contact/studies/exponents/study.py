@@ -56,8 +56,8 @@ class Pair:
         slope, terms = asdict(self.size.slope), self.size.terms
         formula = f"{terms['c'].value:.4f} {terms['k'].value:+.4f} ln x {terms['d'].value:+.4f} x"
         return (
-            f"two spheres  {self.support}, nu = {self.nu:g}: F/F_Hertz - 1 = x ({formula}), x = a/R; "
-            f"slope {slope['value']:.4f} +- {slope['error']:.0e} up to x = {self.size.share.max():.2g}"
+            f"two spheres, {self.support}, nu = {self.nu:g}: F/F_Hertz - 1 = x ({formula}), x = a/R; "
+            f"slope {slope['value']:.3f} +- {slope['error']:.3f} up to x = {self.size.share.max():.2g}"
         )
 
 

@@ -27,8 +27,8 @@ TITLE_WIDTH, INDENT = 132, 3  # look: characters; of a panel's letter before its
 FEW = 4  # columns, in whose cells there is room for numbers
 NOT_ASKED = "0.9"
 LINES = [
-    "White: at its limit; blue: below it, to a hundredth; red: above it, to a hundredfold. Cross: a named failure, or "
-    "nothing to tell. Grey: not asked.",
+    "Blue: below its limit; red: above it; the more colour the farther, to a hundredth and a hundredfold. Cross: a "
+    "named failure, or nothing to tell. Grey: not asked.",
 ]
 
 

@@ -84,6 +84,12 @@ class Trial:
     impact: FromImpact | None = None
     failure: str = ""
 
+    def __repr__(self) -> str:
+        known = {"alpha": self.alpha, "D": self.factor}
+        known |= {f"E* at nu = {nu:g}": modulus for nu, modulus in self.moduli.items()}
+        found = ", ".join(f"{name} {quantity}" for name, quantity in known.items() if quantity)
+        return f"Trial of row {self.row.number}, {self.row.case}: {found or self.failure}"
+
 
 def bodies(row: TableRow, nu: float) -> tuple[Elastic, ...]:
     """As many as the row has, the second twice as stiff and half as wide under pressure."""

@@ -24,6 +24,9 @@ HERE = Path(__file__).parent
 LARGE, SMALL = 1e5, 1e-3  # look: numbers beyond are written with a power of ten
 DIGITS, MOST_DIGITS = 4, 7  # look: of a number without a bar, and of one with it at most
 PLACES = 2  # look: decimals of a point that are kept of coordinates
+WORDS = {"True": "yes", "False": "no"}
+NO_UNIT = "unit", "1"  # a column and what stands there, which is not printed
+SEVERAL = "; "  # between the numbers of a cell
 ONE_LINE, LONG_CELL = 34, ' class="long"'  # look: characters of a cell that is not broken
 WIDTH, HEIGHT, EDGE = 120.0, 36.0, 2.0  # look: of a small curve
 OF_ROOT = re.compile(r"<svg\b[^>]*>")
@@ -55,6 +58,7 @@ def page(report: Report) -> str:
         loader=FileSystemLoader(HERE), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     environment.globals |= {
+        "made_by": report.command_of,
         "figure": lambda told, one: figure(report.folder / FOLDER / told.name, told, one),
         "rows": lambda told, one: list(rows(report.folder / FOLDER / told.name / one.table, one)),
         "histories": lambda told: _histories(report.folder / FOLDER / told.name / told.section.histories),
@@ -102,12 +106,20 @@ def rows(path: Path, listing: Listing) -> Iterator[list[Cell]]:
 
 
 def _cell(row: dict[str, str], column: Column) -> Cell:
-    text = row[column.key]
+    text = WORDS.get(row[column.key], row[column.key])
+    text = "" if (column.key, text) == NO_UNIT else text
     value = _number(text)
     if value is None:
-        return Cell(text, LONG_CELL) if len(text) > ONE_LINE else Cell(text)
+        said = SEVERAL.join(_shorter_number(part) for part in text.split(SEVERAL))
+        return Cell(said, LONG_CELL) if len(said) > ONE_LINE else Cell(said)
     error = _number(row[column.error]) if column.error else None
     return Cell(written(value, error), f' class="number" data-order="{value!r}"')
+
+
+def _shorter_number(text: str) -> str:
+    """One of several numbers of a cell; what is none stays."""
+    value = _number(text)
+    return text if value is None or len(text) <= MOST_DIGITS else written(value)
 
 
 def _number(text: str) -> float | None:

@@ -147,9 +147,19 @@ class Report:
 
     @property
     def headlines(self) -> tuple[Headline, ...]:
-        """The first screen: the sections' own lines, and after the first of them the worst error of all."""
+        """The first screen: the sections' own lines, and with the first of them the worst error of all."""
         lines = [line for one in self.told for line in one.section.headlines]
-        return (*lines[:1], *self._worst, *lines[1:])
+        first, worst = lines[:1], self._worst
+        if [one.word for one in first] == [one.word for one in worst]:
+            first, worst = (
+                [Headline(one.word, f"{one.text} {more.text}") for one, more in zip(first, worst, strict=True)],
+                (),
+            )
+        return (*first, *worst, *lines[1:])
+
+    def command_of(self, part: ReportPart) -> str:
+        """What makes the figures of a part as this report has them."""
+        return f"{part.command} --quick" if self.quick and part.quick else part.command
 
     @property
     def _worst(self) -> tuple[Headline, ...]:

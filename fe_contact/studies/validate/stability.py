@@ -61,8 +61,9 @@ def headline(rows: Sequence[Row]) -> Headline:
     failed, kept = sum(bool(row["failure"]) for row in rows), sum(row["all_kept"] for row in judged)
     good = bool(default) and all(default)
     said = (
-        f"Stability: over ten periods of a bouncing bar the default {'keeps' if good else 'breaks'} every limit, "
-        f"{kept} of {len(judged)} ways tried do; {failed} of {len(rows)} cases end as a named failure."
+        f"Over ten periods of a bouncing bar the default way to step {'keeps' if good else 'breaks'} the limits; "
+        f"of {len(judged)} ways tried {kept} keep{'s' if kept == 1 else ''} them all. Of all {len(rows)} stability "
+        f"cases {failed} end as a named failure."
     )
     return Headline(HOLDS if good else DIFFERS, said)
 
