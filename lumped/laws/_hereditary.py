@@ -21,6 +21,7 @@ from lumped.solvers.hereditary.approach import Approach
 from lumped.solvers.hereditary.closing import Closing
 from lumped.solvers.hereditary.march import Settings
 from lumped.solvers.hereditary.path import HereditaryPhase
+from lumped.solvers.hereditary.pieces import Followed, alone
 from lumped.solvers.hereditary.problem import Hereditary
 from lumped.solvers.hereditary.rebound import Rebound
 
@@ -92,7 +93,7 @@ class Solve(Protocol):
 
     def __call__(
         self, problem: Hereditary, end_time: float, settings: Settings, before: Course | None = None
-    ) -> Course: ...
+    ) -> Followed[Course]: ...
 
 
 class HereditaryLaw(ABC):
@@ -105,6 +106,14 @@ class HereditaryLaw(ABC):
     def solve(self) -> Solve | None:
         """One integration, where one of :func:`once` says all; None where contacts follow one another in steps."""
 
+    @abstractmethod
+    def simulation(self, scene: Scene, tolerance: float) -> Followed[Result]:
+        """As `simulate`, by pieces that may be solved together with those of other impacts."""
+
+    def simulate(self, scene: Scene, tolerance: float) -> Result:
+        """The impacts of a scene to this tolerance. Raises NotReached."""
+        return alone(self.simulation(scene, tolerance))
+
 
 class Inexact(Protocol):
     """What a law itself leaves open of an integration: errors of quantities, and of the force, N; SI."""
@@ -112,7 +121,9 @@ class Inexact(Protocol):
     def __call__(self, problem: Hereditary, course: Course) -> tuple[dict[str, float], float]: ...
 
 
-def simulate(name: str, scene: Scene, tolerance: float, solve: Solve, inexact: Inexact | None = None) -> Result:
+def simulation(
+    name: str, scene: Scene, tolerance: float, solve: Solve, inexact: Inexact | None = None
+) -> Followed[Result]:
     """Integrate tighter and tighter until every bar is within the tolerance. Raises NotReached.
 
     No integration mends what is `inexact`, which the bars have on top.
@@ -121,8 +132,8 @@ def simulate(name: str, scene: Scene, tolerance: float, solve: Solve, inexact: I
     problem, last = problem_of(scene), scene.end_time / time
     rtol, evaluations = min(max(tolerance * LOCAL_SHARE, TIGHTEST), LOOSEST), 0
     while True:
-        few = solve(problem, last, Settings(rtol, FEW))
-        more = solve(problem, last, Settings(rtol, MORE), few)
+        few = yield from solve(problem, last, Settings(rtol, FEW))
+        more = yield from solve(problem, last, Settings(rtol, MORE), few)
         evaluations += FEW * few.steps + MORE * more.steps
         fine = answer_of(scene, problem, more)
         quantities, force_error = bars(fine, answer_of(scene, problem, few), SAFETY)
@@ -150,7 +161,7 @@ def problem_of(scene: Scene) -> Hereditary:
 def once(scene: Scene, rtol: float, solve: Solve) -> Answer:
     """One integration of a scene, without bars. Raises NotReached."""
     problem = problem_of(scene)
-    return answer_of(scene, problem, solve(problem, scene.end_time / problem.scales.time, Settings(rtol)))
+    return answer_of(scene, problem, alone(solve(problem, scene.end_time / problem.scales.time, Settings(rtol))))
 
 
 def answer_of(scene: Scene, problem: Hereditary, course: Course) -> Answer:

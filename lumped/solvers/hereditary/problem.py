@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lumped.load_curves import LoadCurve
 from lumped.materials import Relaxation
-from lumped.numbers import Array
+from lumped.numbers import Array, Real
 
 # A relative step for a difference, and a depth too small to matter.
 NEARBY, TINY = 1e-6, 1e-150
@@ -106,20 +108,13 @@ class Hereditary:
         return np.array([0.0, *self.rates])
 
     @cached_property
-    def _units(self) -> tuple[float, float]:
+    def units(self) -> tuple[float, float]:
         """Of depth, m, and of load, m2."""
         return self.scales.depth, self.scales.load
 
     def loads(self, depth: Array) -> tuple[Array, Array]:
         """y and dy/d depth at a depth; y is odd: below zero it pulls, so that a force ends by crossing zero."""
-        deep, load = self._units
-        force, slope = self.curve.force_and_slope(np.abs(depth) * deep)
-        return np.copysign(force / load, depth), np.asarray(slope * (deep / load))
-
-    def bend(self, depth: Array, slope: Array) -> Array:
-        """d2y/d depth2 by a difference, good for Newton's steps."""
-        step = NEARBY * depth + TINY
-        return np.asarray((self.loads(depth + step)[1] - slope) / step)
+        return _loads(self.curve, depth, *self.units)
 
     def contact_radius(self, depth: Array) -> Array:
         """Contact radius of the elastic load curve, m."""
@@ -149,3 +144,65 @@ class Hereditary:
         states[3] = self.modulus.glassy * load + self.modulus.viscosity * slope
         states[4:] = load
         return states
+
+
+@dataclass(frozen=True, eq=False)
+class Problems:
+    """B problems of as many Prony terms K, their numbers as columns: (B, 1), or (B, K) of the terms.
+
+    `which` (B,) says which of the `curves` each has: those in closed form are shared.
+    """
+
+    curves: Sequence[LoadCurve]
+    which: NDArray[np.intp]
+    deep: Array
+    unit: Array
+    gravity: Array
+    equilibrium: Array
+    viscosity: Array
+    stiffnesses: Array
+    rates: Array
+
+    @classmethod
+    def of(cls, problems: Sequence[Hereditary]) -> Problems:
+        """Theirs; the first one tells the number of terms."""
+        curves, first = [one.curve for one in problems], dict[object, int]()
+        which = np.array([first.setdefault(curve if curve.closed else i, i) for i, curve in enumerate(curves)])
+        numbers = [(*one.units, one.gravity, one.modulus.equilibrium, one.modulus.viscosity) for one in problems]
+        deep, unit, gravity, equilibrium, viscosity = np.array(numbers).T[..., None]
+        stiffnesses, rates = (np.array([getattr(one, name) for one in problems]) for name in ("stiffnesses", "rates"))
+        return cls(curves, which, deep, unit, gravity, equilibrium, viscosity, stiffnesses, rates)
+
+    def chosen(self, some: NDArray[np.bool_]) -> Problems:
+        """Some of them."""
+        return Problems(self.curves, *(getattr(self, one.name)[some] for one in fields(self)[1:]))
+
+    @cached_property
+    def viscous(self) -> bool:
+        """Whether there is a viscosity."""
+        return bool(self.viscosity.any())
+
+    @cached_property
+    def shares(self) -> list[tuple[LoadCurve, NDArray[np.bool_]]]:
+        """The different curves, and whose each is, (B,)."""
+        return [(self.curves[i], self.which == i) for i in np.unique(self.which).tolist()]
+
+    def loads(self, depth: Array) -> tuple[Array, Array]:
+        """As :meth:`Hereditary.loads`, of depths (B, n)."""
+        if len(self.shares) == 1:
+            return _loads(self.shares[0][0], depth, self.deep, self.unit)
+        load, slope = np.empty((2, *depth.shape))
+        for curve, own in self.shares:
+            load[own], slope[own] = _loads(curve, depth[own], self.deep[own], self.unit[own])
+        return load, slope
+
+    def bend(self, depth: Array, slope: Array) -> Array:
+        """d2y/d depth2 by a difference, good for Newton's steps, of depths (B, n)."""
+        step = NEARBY * depth + TINY
+        return np.asarray((self.loads(depth + step)[1] - slope) / step)
+
+
+def _loads(curve: LoadCurve, depth: Array, deep: Real, unit: Real) -> tuple[Array, Array]:
+    """y and dy/d depth at depths in units `deep`, m; of a load in units of `unit`, m2."""
+    force, slope = curve.force_and_slope(np.abs(depth) * deep)
+    return np.copysign(force / unit, depth), np.asarray(slope * (deep / unit))
