@@ -145,14 +145,14 @@ class Pieces:
         found: list[HereditaryPiece | None] = [None] * len(guesses)
         pieces, a, which, before = self, guesses, np.arange(len(guesses)), np.zeros(len(guesses))
         for step in range(1, NEWTON_STEPS + 1):
-            trial = pieces.trial(a)
-            a = a + trial.change
-            size, allowed = _size(trial.change), CONVERGED**2 * _size(a)
+            iterate = pieces.iterate(a)
+            a = a + iterate.change
+            size, allowed = _size(iterate.change), CONVERGED**2 * _size(a)
             going = size < DIVERGED
-            done = (size * CONVERGED <= allowed) | (size**3 <= allowed * before**2) | pieces.rests(trial, size)
+            done = (size * CONVERGED <= allowed) | (size**3 <= allowed * before**2) | pieces.rests(iterate, size)
             done &= going
             if done.any():
-                values = pieces.values(a, trial)
+                values = pieces.values(a, iterate)
                 for i in np.flatnonzero(done).tolist():
                     found[which[i]] = HereditaryPiece(values[i], step)
             going &= ~done
@@ -163,7 +163,7 @@ class Pieces:
             before = size
         return found
 
-    def trial(self, a: Array) -> Trial:
+    def iterate(self, a: Array) -> Iterate:
         """What accelerations (B, N) lead to, and Newton's step from there."""
         problems, response = self.problems, self.response
         depth = self.coasted + _times(self.twice, a)
@@ -180,25 +180,25 @@ class Pieces:
         change = np.asarray(np.linalg.solve(matrix + _unit_matrix(a.shape[1]), lack[..., None])[..., 0], dtype=float)
         # Not gravity less the acceleration: under much of it a faint force would be its rounding.
         deeper = _times(self.twice, change)
-        return Trial(depth, change, deeper, force + _times(matrix, change), rise + slope * deeper)
+        return Iterate(depth, change, deeper, force + _times(matrix, change), rise + slope * deeper)
 
-    def rests(self, trial: Trial, size: Array) -> NDArray[np.bool_]:
+    def rests(self, iterate: Iterate, size: Array) -> NDArray[np.bool_]:
         """Where all of it is rounding, (B,)."""
         least = size <= CONVERGED**2 * np.abs(self.problems.gravity[:, 0])
         if least.any():
-            least &= (np.abs(trial.deeper) <= CONVERGED**2 * np.abs(trial.depth)).all(axis=1)
+            least &= (np.abs(iterate.deeper) <= CONVERGED**2 * np.abs(iterate.depth)).all(axis=1)
         return least
 
-    def values(self, a: Array, trial: Trial) -> Array:
+    def values(self, a: Array, iterate: Iterate) -> Array:
         """The fields at the first place and the nodes, (B, fields, N + 1)."""
         state, weights = self.state, self.weights
         velocity = state[:, 1:2] + _times(weights, a)
         values = np.empty((*state.shape, a.shape[1] + 1))
         values[:, :, 0] = state
         values[:, DEPTH, 1:] = state[:, :1] + _times(weights, velocity)
-        values[:, VELOCITY, 1:], values[:, FORCE, 1:] = velocity, trial.force
-        values[:, WORK, 1:] = state[:, 2:3] + _times(weights, trial.force * velocity)
-        remembered = state[:, MEMORIES:, None] + trial.rise[:, None]
+        values[:, VELOCITY, 1:], values[:, FORCE, 1:] = velocity, iterate.force
+        values[:, WORK, 1:] = state[:, 2:3] + _times(weights, iterate.force * velocity)
+        remembered = state[:, MEMORIES:, None] + iterate.rise[:, None]
         values[:, MEMORIES:, 1:] = _times(self.answers, remembered)
         return values
 
@@ -207,7 +207,7 @@ class Pieces:
         return Pieces(self.problems.chosen(which), *(getattr(self, one.name)[which] for one in fields(self)[1:]))
 
 
-class Trial(NamedTuple):
+class Iterate(NamedTuple):
     """Depths tried, Newton's step of the accelerations, by how much it goes deeper; force and rise of the load then.
 
     All of shape (B, N).
