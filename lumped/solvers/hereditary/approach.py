@@ -62,12 +62,11 @@ def follow(
     def attempt(root: float, length: float, state: Array) -> Followed[HereditaryPiece | None]:
         """A long piece may try depths beyond the load curve that the motion never sees: then a shorter one."""
         nonlocal beyond
-        asked, found = PieceAsked(problem, settings.table, over_root, root, length, state, 0.0), None
+        asked, found = PieceAsked(problem, settings.table, over_root, root, length, state), None
         try:
             if before is not None:
-                force = before.value(FORCE, root + length * settings.table.points)
-                found = yield asked._replace(guess=problem.gravity - force)
-            return found or (yield asked._replace(guess=problem.gravity - float(state[FORCE])))
+                found = yield asked._replace(before=before, places=root + length * settings.table.points)
+            return found or (yield asked)
         except (BadInput, NotReached) as failure:
             beyond = failure
             return None

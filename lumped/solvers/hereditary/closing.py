@@ -93,7 +93,7 @@ def _again(
         span, state = (path.end, begin), path.state(path.end)
         more = yield from follow(problem, span, state, begin - path.end, _released, settings, largest, before.path)
         path, steps = path.joined(more.path), more.steps
-    state, guess = path.state(begin), Guess.of(problem, before.end - begin**2, over, before.steep, settings)
+    state, guess = path.state(begin), Guess.of(before.end - begin**2, over, before.steep, settings)
     last = yield from shut(problem, state, guess, settings, CLOSED, settings.rtol * largest)
     if last is None or not last.fits:
         return None
@@ -105,9 +105,8 @@ def _guess(
 ) -> Guess:
     """Of the last piece from a place on: as it was hoped for earlier, or until a zero of the force, or by the state."""
     if zero is None and hoped and hoped.last and hoped.end > begin**2:
-        return Guess.of(problem, hoped.end - begin**2, hoped.last, hoped.steep, settings)
-    duration = _until_flat(problem, state) if zero is None else zero**2 - begin**2
-    return Guess(duration, np.full(settings.points, problem.gravity - state[FORCE]))
+        return Guess.of(hoped.end - begin**2, hoped.last, hoped.steep, settings)
+    return Guess(_until_flat(problem, state) if zero is None else zero**2 - begin**2)
 
 
 def _closing(path: Path | None, begin: float, last: Shut, steps: int) -> Closing:
@@ -133,23 +132,26 @@ def _until_flat(problem: Hereditary, state: Array) -> float:
 
 
 class Guess(NamedTuple):
-    """A duration, the accelerations at the nodes, and how steeply F falls with the load y, 0 where not known."""
+    """A duration, how steeply F falls with the load y, 0 where not known, and what path has about such a force, where.
+
+    Without a path the force is taken as it is now.
+    """
 
     duration: float
-    accelerations: Array
     steep: float = 0.0
+    over: Path | None = None
+    places: Array | None = None
 
     @classmethod
-    def of(cls, problem: Hereditary, duration: float, over: Path, steep: float, settings: Settings) -> Guess:
+    def of(cls, duration: float, over: Path, steep: float, settings: Settings) -> Guess:
         """From a piece over q that was found, and ends as this one of another duration."""
-        places = -(duration**0.5) * (1.0 - settings.table.points)
-        return cls(duration, problem.gravity - over.value(FORCE, places), steep)
+        return cls(duration, steep, over, -(duration**0.5) * (1.0 - settings.table.points))
 
     @classmethod
-    def within(cls, problem: Hereditary, duration: float, over: Path, steep: float, settings: Settings) -> Guess:
+    def within(cls, duration: float, over: Path, steep: float, settings: Settings) -> Guess:
         """From a piece over q of the same motion, and begun at the same time, but followed for another duration."""
         left = float(over.breaks[0]) ** 2 - duration + duration * (1.0 - settings.table.points) ** 2
-        return cls(duration, problem.gravity - over.value(FORCE, -np.sqrt(np.maximum(left, 0.0))), steep)
+        return cls(duration, steep, over, -np.sqrt(np.maximum(left, 0.0)))
 
 
 class Shut(NamedTuple):
@@ -174,12 +176,12 @@ def shut(
     load, slope = (float(value[0]) for value in problem.loads(state[:1]))
     if not load:
         return None
-    (duration, a, steep), steps, missed = start, 0, math.inf
+    duration, steps, missed = start.duration, 0, math.inf
     power, unit = _power(float(state[DEPTH]), load, slope)
-    steep, before = steep or unit * _mean_modulus(problem, duration), None
+    guess, steep, before = start, start.steep or unit * _mean_modulus(problem, duration), None
     for _ in range(TRIES):
         try:
-            piece = yield PieceAsked(problem, settings.table, to_end, 0.0, duration, state, a)
+            piece = yield PieceAsked(problem, settings.table, to_end, 0.0, duration, state, guess.over, guess.places)
         except (BadInput, NotReached):  # depths beyond the load curve, which the motion may never see
             return None
         if piece is None:
@@ -197,7 +199,8 @@ def shut(
         if abs(change) <= close * duration or rounded or not fits:
             return Shut(path, duration if fits else longer * duration, steep, steps, fits)
         before, missed = now, abs(change) if before else math.inf
-        duration, a, _ = Guess.within(problem, longer * duration, path, steep, settings)
+        guess = Guess.within(longer * duration, path, steep, settings)
+        duration = guess.duration
     return None
 
 

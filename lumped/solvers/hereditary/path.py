@@ -149,6 +149,18 @@ class Path:
         return chebyshev(np.minimum(np.maximum(x, -1.0), 1.0), self.coefficients.shape[2]), piece
 
 
+def values_of(index: int, paths: Sequence[Path], places: Array) -> Array:
+    """One field of paths with as many coefficients, each at places of its own (B, n), and the same in any company."""
+    piece = np.array([path._piece(own) for path, own in zip(paths, places, strict=True)])
+    begun = np.cumsum([0, *(path.breaks.size for path in paths[:-1])])[:, None]  # of each path, among all breaks
+    breaks = np.concatenate([path.breaks for path in paths])
+    low, high = breaks[begun + piece], breaks[begun + piece + 1]
+    x = np.minimum(np.maximum((2.0 * places - low - high) / (high - low), -1.0), 1.0)
+    series = np.concatenate([path.coefficients[:, index] for path in paths])
+    own = series[begun + piece - np.arange(len(paths))[:, None]]  # a path has a piece less than breaks
+    return np.asarray((own * np.cos(np.arccos(x)[..., None] * np.arange(own.shape[-1]))).sum(axis=-1))
+
+
 def chebyshev(x: Array, count: int) -> Array:
     """T_0 to T_{count-1}, two or more, at x: (count, ...). T_{m+k} = 2 T_m T_k - T_{m-k}; sooner told of many."""
     if x.size < FEW:

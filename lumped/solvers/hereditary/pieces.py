@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from lumped.errors import BadInput, FeContactError, NotReached
 from lumped.numbers import Array
+from lumped.solvers.hereditary.path import Path, values_of
 from lumped.solvers.hereditary.problem import Hereditary, Problems
 from lumped.solvers.radau import Nodes
 
@@ -55,7 +56,7 @@ def to_end(table: Nodes, root: Array, duration: Array) -> tuple[Array, Array]:
 
 
 class PieceAsked(NamedTuple):
-    """A piece from a state, (4 + K,), the acceleration guessed, at the nodes (N,) or one for all."""
+    """A piece from a state, (4 + K,), the force guessed as that of a path `before` at places (N,), or as it is now."""
 
     problem: Hereditary
     table: Nodes
@@ -63,12 +64,14 @@ class PieceAsked(NamedTuple):
     root: float
     length: float
     state: Array
-    guess: Array | float
+    before: Path | None = None
+    places: Array | None = None
 
     @property
     def kind(self) -> tuple[object, ...]:
         """What pieces share that are solved together."""
-        return self.clock, self.table.points.size, self.problem.terms, self.problem.modulus.viscosity > 0.0
+        terms = self.before.coefficients.shape[2] if self.before else 0
+        return self.clock, self.table.points.size, self.problem.terms, self.problem.modulus.viscosity > 0.0, terms
 
 
 # What asks for pieces until it has its answer; it is sent a piece, or None where Newton's steps fail.
@@ -100,10 +103,17 @@ def together(impacts: Iterable[Followed[T]]) -> list[T]:
 def _told(asked: Sequence[PieceAsked]) -> list[Told]:
     """The pieces asked for, all of one kind; what fails with all is asked one by one."""
     try:
-        pieces = Pieces.of(asked)
-        return [*pieces.solved(np.array([np.full(pieces.coasted.shape[1], one.guess) for one in asked]))]
+        return [*Pieces.of(asked).solved(_guessed(asked))]
     except (BadInput, NotReached) as failure:  # depths beyond a load curve
         return [failure] if len(asked) == 1 else [told for one in asked for told in _told([one])]
+
+
+def _guessed(asked: Sequence[PieceAsked]) -> Array:
+    """The force at the nodes as it is guessed, (B, N)."""
+    paths = [one.before for one in asked if one.before]
+    if not paths:
+        return np.array([np.full(one.table.points.size, one.state[FORCE]) for one in asked])
+    return values_of(FORCE, paths, np.array([one.places for one in asked]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,10 +150,11 @@ class Pieces:
         coasted = state[:, :1] + state[:, 1:2] * elapsed
         return cls(problems, state, weights, answers, response, left, weights @ weights, coasted)
 
-    def solved(self, guesses: Array) -> list[HereditaryPiece | None]:
-        """Each from its guess, (B, N); None where Newton's steps fail."""
-        found: list[HereditaryPiece | None] = [None] * len(guesses)
-        pieces, a, which, before = self, guesses, np.arange(len(guesses)), np.zeros(len(guesses))
+    def solved(self, forces: Array) -> list[HereditaryPiece | None]:
+        """Each from a guess of its force, (B, N); None where Newton's steps fail."""
+        count, a = len(forces), self.problems.gravity - forces
+        found: list[HereditaryPiece | None] = [None] * count
+        pieces, which, before = self, np.arange(count), np.zeros(count)
         for step in range(1, NEWTON_STEPS + 1):
             iterate = pieces.iterate(a)
             a = a + iterate.change
