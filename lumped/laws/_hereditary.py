@@ -31,6 +31,7 @@ LOOSEST, TIGHTEST = 1e-5, 1e-13  # of the integration's relative tolerance: safe
 NEXT = 1e-2  # work: times the tolerance, where a bar was missed
 # The pieces chosen with few nodes are solved again with more, which err less by orders: the difference is the bar.
 FEW, MORE = 12, 18
+MEET = 1e-9  # rounding: where two phases meet they differ by less, relatively
 SAFETY = 1.5  # safety: of the bars, over the change from few points to more
 
 
@@ -54,7 +55,13 @@ class Course:
 
     def highest(self, field: int) -> tuple[float, float]:
         """When a field is highest, 0 the depth and 3 the force, and how high."""
-        return max((phase.highest(field) for phase in self.phases), key=lambda found: found[1])
+        samples = [phase.samples(field) for phase in self.phases]
+        tops = [float(values.max()) for values in samples]
+        near = max(tops) - MEET * abs(max(tops))
+        every = zip(self.phases, samples, tops, strict=True)
+        return max(
+            (phase.highest(field, values) for phase, values, top in every if top >= near), key=lambda one: one[1]
+        )
 
     def at(self, times: Array) -> Array:
         """Depth, velocity, force and the edge's depth, shape (4, n); a striker at rest stays so, without force."""

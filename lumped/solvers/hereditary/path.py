@@ -77,10 +77,9 @@ class Path:
         own, rise = self.coefficients[:, index].T, self._rises[index]
         return (own[:, piece] * basis).sum(axis=0), (rise[:, piece] * basis).sum(axis=0)
 
-    def curve(self, index: int, near: float) -> tuple[Curve, Curve]:
-        """One field and its derivative as functions of a place in the piece around `near`."""
-        piece = self._piece(near)
-        low, high = (float(place) for place in self.breaks[piece : piece + 2])
+    def curve(self, index: int, piece: int) -> tuple[Curve, Curve]:
+        """One field and its derivative as functions of a place in one piece."""
+        low, high = self.breaks[piece : piece + 2].tolist()
         own = self.coefficients[piece, index]
         rise = slopes(own.size) @ own * (2.0 / (high - low))
 
@@ -113,18 +112,19 @@ class Path:
         before = self.coefficients[:last, index] @ series[:, :-1]
         return np.append(before.ravel(), self.coefficients[last, index] @ final)
 
-    def highest(self, index: int) -> tuple[float, float]:
-        """Place and height of the highest point of a field."""
-        values, places = self.samples(index), self.places.tolist()
-        i = int(np.argmax(values))
+    def highest(self, index: int, samples: Array) -> tuple[float, float]:
+        """Place and height of the highest point of a field, whose :meth:`samples` are known."""
+        i = int(np.argmax(samples))
+        near, known = self.places[max(i - 1, 0) : i + 2].tolist(), -1
         # Each interval between samples lies in one piece, and the top in the one into which the curve rises.
-        for low, high in pairwise(places[max(i - 1, 0) : i + 2]):
-            value, slope = self.curve(index, 0.5 * (low + high))
+        for low, high in pairwise(near):
+            if (piece := int(self._piece(0.5 * (low + high)))) != known:
+                known, (value, slope) = piece, self.curve(index, piece)
             ends = slope(low), slope(high)
             if ends[0] > 0.0 > ends[1]:
                 top = falling_zero(slope, low, high, ends)
                 return top, value(top)
-        return places[i], float(values[i])
+        return float(self.places[i]), float(samples[i])
 
     def fall(self, index: int, level: float = 0.0) -> float | None:
         """Where a field first falls to a level in the last piece, after its start; None where it does not."""
@@ -133,7 +133,7 @@ class Path:
         below = np.flatnonzero(own @ _at_close(own.size)[:, 1:] <= level)
         if not below.size:
             return None
-        value, _ = self.curve(index, 0.5 * (low + high))
+        value, _ = self.curve(index, len(self.coefficients) - 1)
         before, after = (low + (high - low) * CLOSE[below[0] : below[0] + 2]).tolist()
         return falling_zero(lambda place: value(place) - level, before, after)
 
@@ -303,7 +303,11 @@ class HereditaryPhase:
     def _seen(self) -> Path:
         return self.path.of_fields([self.depth, self.depth + 1, self.depth + 3, self.edge])
 
-    def highest(self, field: int) -> tuple[float, float]:
-        """When a field is highest, 0 the depth and 3 the force, and how high."""
-        place, height = self.path.highest(self.depth + field)
+    def samples(self, field: int) -> Array:
+        """A field, 0 the depth and 3 the force, at `times`, shape (n,)."""
+        return self.path.samples(self.depth + field)
+
+    def highest(self, field: int, samples: Array) -> tuple[float, float]:
+        """When a field of these samples is highest, and how high."""
+        place, height = self.path.highest(self.depth + field, samples)
         return float(self.clock.time(np.array([place]))[0]), height

@@ -192,7 +192,7 @@ def rebound(
     path = found.path
     if found.over:
         low, high = (float(place) for place in path.breaks[-2:])
-        time, _ = path.curve(TIME, 0.5 * (low + high))
+        time, _ = path.curve(TIME, len(path.coefficients) - 1)
         path = path.until(falling_zero(lambda place: end_time - time(place), low, high))
         return Rebound(path, End.TIME, found.steps)
     if found.stuck:
