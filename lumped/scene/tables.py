@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated, ClassVar, Protocol, TypeVar
+from typing import Annotated, ClassVar, Protocol, TypeVar, cast
 
 from lumped.errors import BadInput, Fault
 from lumped.materials import Material
@@ -197,6 +197,7 @@ Impact = TypeVar("Impact", bound=Lawful)
 Pressed = TypeVar("Pressed")
 B = TypeVar("B")
 Made = TypeVar("Made")
+Known = dict[str, tuple[object, object]]  # by the path of a table: the last one without a fault, and what it gave
 
 
 class TableReader:
@@ -262,6 +263,11 @@ class SceneReader(TableReader):
     """Makes a scene, or what a slow indentation needs of it, of the tables of a scene file."""
 
     TABLES = ("striker", "target", "model", "motion", "law", "numerics")
+
+    def __init__(self, source: str, raw: Table, folder: Path = Path(), known: Known | None = None) -> None:
+        """`known`: parts of other scenes of this folder, taken where the very same table describes them here."""
+        super().__init__(source, raw, folder)
+        self.known: Known = {} if known is None else known
 
     def scene(self, kind: Callable[..., Impact], law_known: bool = True) -> tuple[Impact, Table]:
         """The scene and the raw numerics; raises BadInput when anything is wrong.
@@ -339,6 +345,20 @@ class SceneReader(TableReader):
 
     def body(self, part: str, folder: Folder[Part[B]], common: Mapping[str, Key]) -> tuple[Table, B | None]:
         """A body's checked common values, and what the member of `folder` makes of its own keys."""
+        return self.once(part, self.raw.get(part), lambda: self.read_body(part, folder, common))
+
+    def once(self, part: str, table: object, read: Callable[[], Made]) -> Made:
+        """What is read of a part's table, which may be known; with a fault it is read again, and the fault noted."""
+        before, found = self.known.get(part, (None, None))
+        if table is not None and before is table:
+            return cast(Made, found)
+        faults, made = len(self.faults), read()
+        if len(self.faults) == faults:
+            self.known[part] = table, made
+        return made
+
+    def read_body(self, part: str, folder: Folder[Part[B]], common: Mapping[str, Key]) -> tuple[Table, B | None]:
+        """The same, of its table."""
         table = self.table(part)
         rest = {key: value for key, value in table.items() if key != "material"}
         if part not in self.raw:
@@ -357,7 +377,7 @@ class SceneReader(TableReader):
         if not body:
             return None
         path, table = f"{part}.material", self.table("material", inside=part)
-        return self.network(path, table) if table else None
+        return self.once(path, body.get("material"), lambda: self.network(path, table)) if table else None
 
     def inertia(self, model: Table, target: Target | None) -> None:
         """Whether the target can have the inertia asked for, and a density for it."""

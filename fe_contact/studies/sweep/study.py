@@ -27,6 +27,7 @@ from fe_contact.studies.workers import answers, checked_jobs, workers
 from fe_contact.threads import one_thread
 from lumped.errors import BadInput, CannotWrite, FeContactError
 from lumped.result.result import UNITS
+from lumped.scene.tables import Known
 from lumped.schema import Table
 from lumped.solvers.hereditary.pieces import Followed, together
 
@@ -152,20 +153,20 @@ def _rows_of(folder: Path, name: str) -> dict[str, Table]:
 
 def answer(base: BaseScene, tolerance: float | None, batch: Iterable[Question]) -> dict[str, Table]:
     """Rows of a batch by their digests, in any process; a failure with a name is a row too."""
-    rows, left = dict[str, Table](), iter(batch)
+    rows, left, known = dict[str, Table](), iter(batch), Known()
     with one_thread:
         while some := [*islice(left, TOGETHER)]:
             begun = time.process_time()
-            found = together(_row(base, tolerance, question) for question in some)
+            found = together(_row(base, known, tolerance, question) for question in some)
             share = {"cpu_s": (time.process_time() - begun) / len(some)}
             rows |= {question.digest: row | share for question, row in zip(some, found, strict=True)}
     return rows
 
 
-def _row(base: BaseScene, tolerance: float | None, question: Question) -> Followed[Table]:
+def _row(base: BaseScene, known: Known, tolerance: float | None, question: Question) -> Followed[Table]:
     row: Table = {"converged": False, "refused": False, "reason": "", "values": {}}
     try:
-        scene, given = base.read(question.overrides)
+        scene, given = base.read(question.overrides, known)
         own = None if "numerics.tolerance" in question.overrides else tolerance
         found = yield from simulation(scene, question.method, given, own)
         row |= {"converged": found.converged, "reason": found.message}
