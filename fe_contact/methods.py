@@ -10,8 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass, replace
 
-import numpy as np
-
 from fe_contact.errors import faults_of
 from fe_contact.progress import Count, Progress, silent
 from fe_contact.settings import Given, checked, tolerance_of
@@ -95,7 +93,7 @@ def _by_law(scene: Scene, name: str, given: Given) -> Followed[Result]:
         raise BadInput(Fault("--method", "", reason))
     found = yield from by_law(laws.get(name).of(scene), scene, tolerance_of(given))
     if scene.has_geometry:
-        widest = float(np.nanmax(found.history.contact_radius, initial=0.0))
+        widest = float(found.history.contact_radius.max(initial=0.0))
         scene.check_sunk(found.quantities["peak_depth"].value or 0.0, widest)
     return found
 

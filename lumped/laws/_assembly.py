@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
@@ -180,7 +181,7 @@ def assemble(
     # The rows themselves add what linear interpolation errs by, less than the tolerance; the bar is for the
     # rows.
     history = History(times, depth, velocity, force, radius, np.full(times.size, force_error))
-    resolved = model or replace(scene.model, inertia=False, kinematics="small", plasticity=False)
+    resolved = model or _small(scene.model)
     missed = unmet(quantities, tolerance)
     peak = quantities["peak_force"].value or 1.0
     return Result(
@@ -203,6 +204,12 @@ def assemble(
         message="; ".join(part for part in (answer.message, missed) if part),
         contacts=answer.contacts,
     )
+
+
+@lru_cache(maxsize=16)  # of many impacts it is the same
+def _small(model: Model) -> Model:
+    """The model with small displacements and without inertia."""
+    return replace(model, inertia=False, kinematics="small", plasticity=False)
 
 
 def _relative(quantities: Mapping[str, Quantity]) -> dict[str, float]:
