@@ -34,7 +34,7 @@ from lumped.solvers.hereditary.pieces import Followed, together
 DIGITS = 32  # of a digest: no two of 1e18 rows share one
 SHARES = 8  # batches of a worker: who is done first waits for an eighth of a share at most
 BATCH, MOST = 2.0, 500  # work: s that a batch takes, which is lost with its worker, and its answers; a file each
-TOGETHER = 50  # work: answers whose pieces are solved in one array, of some kilobytes each
+TOGETHER = 100  # work: answers whose pieces are solved in one array, of some kilobytes each
 HELD = 64  # batches held while the table is read, some hundred kilobytes each
 # keys, or their last parts, that change no mesh: cases that differ in these alone follow one another
 UNMESHED = ("velocity", "mass", "gravity", "direction", "impacts", "end_time")

@@ -70,8 +70,9 @@ class PieceAsked(NamedTuple):
     @property
     def kind(self) -> tuple[object, ...]:
         """What pieces share that are solved together."""
-        terms = self.before.coefficients.shape[2] if self.before else 0
-        return self.clock, self.table.points.size, self.problem.terms, self.problem.modulus.viscosity > 0.0, terms
+        problem, known = self.problem, self.before.coefficients.shape[2] if self.before else 0
+        driven = problem.modulus.viscosity > 0.0, problem.gravity != 0.0
+        return self.clock, self.table.points.size, known, problem.terms, *driven
 
 
 # What asks for pieces until it has its answer; it is sent a piece, or None where Newton's steps fail.
@@ -112,7 +113,7 @@ def _guessed(asked: Sequence[PieceAsked]) -> Array:
     """The force at the nodes as it is guessed, (B, N)."""
     paths = [one.before for one in asked if one.before]
     if not paths:
-        return np.array([np.full(one.table.points.size, one.state[FORCE]) for one in asked])
+        return np.array([[one.state[FORCE]] for one in asked]).repeat(asked[0].table.points.size, axis=1)
     return values_of(FORCE, paths, np.array([one.places for one in asked]))
 
 
@@ -145,10 +146,10 @@ class Pieces:
         decays = weights[:, None] * problems.rates[:, :, None, None]
         answers = np.asarray(np.linalg.inv(eye + decays), dtype=float)
         stiffnesses = problems.stiffnesses[:, :, None]
-        response = (stiffnesses[..., None] * answers).sum(axis=1) + problems.equilibrium[:, :, None] * eye
-        left = (stiffnesses * state[:, MEMORIES:, None] * answers.sum(axis=3)).sum(axis=1)
+        response = np.add.reduce(stiffnesses[..., None] * answers, axis=1) + problems.equilibrium[:, :, None] * eye
+        held = stiffnesses * state[:, MEMORIES:, None] * np.add.reduce(answers, axis=3)
         coasted = state[:, :1] + state[:, 1:2] * elapsed
-        return cls(problems, state, weights, answers, response, left, weights @ weights, coasted)
+        return cls(problems, state, weights, answers, response, np.add.reduce(held, axis=1), weights @ weights, coasted)
 
     def solved(self, forces: Array) -> list[HereditaryPiece | None]:
         """Each from a guess of its force, (B, N); None where Newton's steps fail."""
@@ -160,7 +161,9 @@ class Pieces:
             a = a + iterate.change
             size, allowed = _size(iterate.change), CONVERGED**2 * _size(a)
             going = size < DIVERGED
-            done = (size * CONVERGED <= allowed) | (size**3 <= allowed * before**2) | pieces.rests(iterate, size)
+            done = (size * CONVERGED <= allowed) | (size**3 <= allowed * before**2)
+            if pieces.problems.weighty:
+                done |= pieces.rests(iterate, size)
             done &= going
             if done.any():
                 values = pieces.values(a, iterate)
@@ -195,10 +198,8 @@ class Pieces:
 
     def rests(self, iterate: Iterate, size: Array) -> NDArray[np.bool_]:
         """Where all of it is rounding, (B,)."""
-        least = size <= CONVERGED**2 * np.abs(self.problems.gravity[:, 0])
-        if least.any():
-            least &= (np.abs(iterate.deeper) <= CONVERGED**2 * np.abs(iterate.depth)).all(axis=1)
-        return least
+        still = (np.abs(iterate.deeper) <= CONVERGED**2 * np.abs(iterate.depth)).all(axis=1)
+        return np.asarray(still & (size <= CONVERGED**2 * np.abs(self.problems.gravity[:, 0])))
 
     def values(self, a: Array, iterate: Iterate) -> Array:
         """The fields at the first place and the nodes, (B, fields, N + 1)."""
@@ -233,12 +234,13 @@ class Iterate(NamedTuple):
 
 def _times(matrices: Array, columns: Array) -> Array:
     """Each of the matrices (..., N, N) on its column (..., N)."""
-    return np.asarray((matrices @ columns[..., None])[..., 0])
+    found: Array = (matrices @ columns[..., None])[..., 0]
+    return found
 
 
 def _size(rows: Array) -> Array:
     """The norm of each of the rows (B, N)."""
-    return np.asarray(np.sqrt((rows * rows).sum(axis=1)))
+    return np.asarray(np.sqrt(np.add.reduce(rows * rows, axis=1)))
 
 
 @cache

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -15,6 +15,7 @@ from lumped.numbers import Array, Real
 
 # A relative step for a difference, and a depth too small to matter.
 NEARBY, TINY = 1e-6, 1e-150
+NUMBERS = 5  # of a problem beside those of its terms
 # A share of the shortest contact time, to see how a load starts; a power is whole that is as near to a whole number.
 SHALLOW, WHOLE = 1e-9, 1e-3
 
@@ -112,6 +113,12 @@ class Hereditary:
         """Of depth, m, and of load, m2."""
         return self.scales.depth, self.scales.load
 
+    @cached_property
+    def row(self) -> Array:
+        """Its numbers: units, gravity, E_inf, viscosity; of every term modulus and rate, shape (5 + 2 K,)."""
+        terms = np.stack([self.stiffnesses, self.rates], axis=1).ravel()
+        return np.array([*self.units, self.gravity, self.modulus.equilibrium, self.modulus.viscosity, *terms])
+
     def loads(self, depth: Array) -> tuple[Array, Array]:
         """y and dy/d depth at a depth; y is odd: below zero it pulls, so that a force ends by crossing zero."""
         return _loads(self.curve, depth, *self.units)
@@ -148,52 +155,70 @@ class Hereditary:
 
 @dataclass(frozen=True, eq=False)
 class Problems:
-    """B problems of as many Prony terms K, their numbers as columns: (B, 1), or (B, K) of the terms.
+    """B problems of as many Prony terms K, all with viscosity, and weight, or none; their numbers, `rows` (B, 5 + 2 K).
 
     `which` (B,) says which of the `curves` each has: those in closed form are shared.
     """
 
     curves: Sequence[LoadCurve]
     which: NDArray[np.intp]
-    deep: Array
-    unit: Array
-    gravity: Array
-    equilibrium: Array
-    viscosity: Array
-    stiffnesses: Array
-    rates: Array
+    rows: Array
 
     @classmethod
     def of(cls, problems: Sequence[Hereditary]) -> Problems:
-        """Theirs; the first one tells the number of terms."""
+        """Theirs."""
         curves, first = [one.curve for one in problems], dict[object, int]()
         which = np.array([first.setdefault(curve if curve.closed else i, i) for i, curve in enumerate(curves)])
-        numbers = [(*one.units, one.gravity, one.modulus.equilibrium, one.modulus.viscosity) for one in problems]
-        deep, unit, gravity, equilibrium, viscosity = np.array(numbers).T[..., None]
-        stiffnesses, rates = (np.array([getattr(one, name) for one in problems]) for name in ("stiffnesses", "rates"))
-        return cls(curves, which, deep, unit, gravity, equilibrium, viscosity, stiffnesses, rates)
+        return cls(curves, which, np.array([one.row for one in problems]))
 
     def chosen(self, some: NDArray[np.bool_]) -> Problems:
         """Some of them."""
-        return Problems(self.curves, *(getattr(self, one.name)[some] for one in fields(self)[1:]))
+        return Problems(self.curves, self.which[some], self.rows[some])
 
-    @cached_property
+    @property
+    def gravity(self) -> Array:
+        """(B, 1)."""
+        return self.rows[:, 2:3]
+
+    @property
+    def equilibrium(self) -> Array:
+        """E_inf, (B, 1)."""
+        return self.rows[:, 3:4]
+
+    @property
+    def viscosity(self) -> Array:
+        """(B, 1)."""
+        return self.rows[:, 4:5]
+
+    @property
     def viscous(self) -> bool:
-        """Whether there is a viscosity."""
-        return bool(self.viscosity.any())
+        """Whether they have a viscosity."""
+        return bool(self.rows[0, 4] > 0.0)
 
-    @cached_property
-    def shares(self) -> list[tuple[LoadCurve, NDArray[np.bool_]]]:
-        """The different curves, and whose each is, (B,)."""
-        return [(self.curves[i], self.which == i) for i in np.unique(self.which).tolist()]
+    @property
+    def weighty(self) -> bool:
+        """Whether there is gravity."""
+        return bool(self.rows[0, 2] != 0.0)
+
+    @property
+    def stiffnesses(self) -> Array:
+        """Moduli E_k, (B, K)."""
+        return self.rows[:, NUMBERS::2]
+
+    @property
+    def rates(self) -> Array:
+        """1/tau_k, (B, K)."""
+        return self.rows[:, NUMBERS + 1 :: 2]
 
     def loads(self, depth: Array) -> tuple[Array, Array]:
         """As :meth:`Hereditary.loads`, of depths (B, n)."""
-        if len(self.shares) == 1:
-            return _loads(self.shares[0][0], depth, self.deep, self.unit)
+        deep, unit = self.rows[:, :1], self.rows[:, 1:2]
+        if not (self.which - self.which[0]).any():
+            return _loads(self.curves[self.which[0]], depth, deep, unit)
         load, slope = np.empty((2, *depth.shape))
-        for curve, own in self.shares:
-            load[own], slope[own] = _loads(curve, depth[own], self.deep[own], self.unit[own])
+        for i in np.unique(self.which).tolist():
+            own = self.which == i
+            load[own], slope[own] = _loads(self.curves[i], depth[own], deep[own], unit[own])
         return load, slope
 
     def bend(self, depth: Array, slope: Array) -> Array:
