@@ -68,7 +68,8 @@ class Course:
         found = np.empty((4, times.size))
         for phase, inside in self._shared(times):
             found[:, inside] = phase.at(times[inside])
-        found[1:3, self._rested(times)] = 0.0
+        if self.end is End.REST:
+            found[1:3, self._rested(times)] = 0.0
         return found
 
     def force(self, times: Array) -> Array:
@@ -76,23 +77,24 @@ class Course:
         found = np.empty(times.size)
         for phase, inside in self._shared(times):
             found[inside] = phase.force(times[inside])
-        found[self._rested(times)] = 0.0
+        if self.end is End.REST:
+            found[self._rested(times)] = 0.0
         return found
 
     def _shared(self, times: Array) -> Iterator[tuple[HereditaryPhase, NDArray[np.bool_]]]:
         """The phases that know some of the times, and which; where two meet the later one speaks."""
-        which = np.searchsorted(self._ends[:-1], times, side="right")
+        which = self._ends[:-1].searchsorted(times, side="right")
         for i, phase in enumerate(self.phases):
             if (inside := which == i).any():
                 yield phase, inside
 
     def _rested(self, times: Array) -> NDArray[np.bool_]:
-        """Which of the times are those of a striker at rest."""
-        return times > (self._ends[-1] * (1.0 + 1e-12) if self.end is End.REST else np.inf)
+        """Which of the times are those after the last piece."""
+        return np.asarray(times > self._ends[-1] * (1.0 + 1e-12))
 
     @cached_property
-    def _ends(self) -> list[float]:
-        return [float(phase.times[-1]) for phase in self.phases]
+    def _ends(self) -> Array:
+        return np.array([phase.times[-1] for phase in self.phases])
 
 
 class Solve(Protocol):
