@@ -10,18 +10,17 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass, replace
 
-import numpy as np
-
 from fe_contact.errors import faults_of
 from fe_contact.progress import Count, Progress, silent
 from fe_contact.settings import Given, checked, tolerance_of
 from lumped import laws
-from lumped import simulate as simulate_law
 from lumped.errors import BadInput, Fault, FeContactError, nearest, shown
+from lumped.laws.base import simulation as by_law
 from lumped.progress import counting_steps
 from lumped.result.result import Result, largest_bar, unmet
 from lumped.scene.scene import Scene
 from lumped.schema import Table
+from lumped.solvers.hereditary.pieces import Followed, alone
 
 FE = "fe"
 OWN = (FE, "cheapest")
@@ -74,14 +73,27 @@ def simulate(
         return replace(found, weighed=weighing.to_json()) if weighing else found
 
 
+def simulation(scene: Scene, method: str, table: Given, tolerance: float | None = None) -> Followed[Result]:
+    """As :func:`simulate`, by pieces, where a law has them: those of many impacts are solved together."""
+    if method in OWN:
+        return simulate(scene, method, table, tolerance)
+    with faults_of(scene):
+        return (yield from _by_law(scene, method, settings(table, tolerance, scene.source)))
+
+
 def _lumped(scene: Scene, name: str, given: Given, progress: Progress) -> Result:
+    """By a lumped law, with its steps counted. Raises BadInput for an unknown name."""
+    with counting_steps(Count.of(progress, f"time steps of {name}", 0.0)):
+        return alone(_by_law(scene, name, given))
+
+
+def _by_law(scene: Scene, name: str, given: Given) -> Followed[Result]:
     """By a lumped law. Raises BadInput for an unknown name."""
     if reason := refusal(name):
         raise BadInput(Fault("--method", "", reason))
-    with counting_steps(Count.of(progress, f"time steps of {name}", 0.0)):
-        found = simulate_law(laws.get(name).of(scene), scene, tolerance=tolerance_of(given))
+    found = yield from by_law(laws.get(name).of(scene), scene, tolerance_of(given))
     if scene.has_geometry:
-        widest = float(np.nanmax(found.history.contact_radius, initial=0.0))
+        widest = float(found.history.contact_radius.max(initial=0.0))
         scene.check_sunk(found.quantities["peak_depth"].value or 0.0, widest)
     return found
 

@@ -2,18 +2,41 @@
 
 Their dense systems have some 70 unknowns: a second thread only waits, and processor time doubles or worse. With one
 thread every sum is also taken in one order, so the same scene gives the same bytes on any number of processors. An
-environment variable would come too late where numpy was imported first.
+environment variable would come too late where numpy was imported first; a process that is started for us has it from
+the beginning, and need not load every BLAS at once to hold it back.
 """
 
 from __future__ import annotations
 
-from contextlib import ContextDecorator
+import os
+from collections.abc import Iterator
+from contextlib import ContextDecorator, contextmanager
 from functools import cache
 from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from threadpoolctl import ThreadpoolController
+
+
+LIMITS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "OMP_NUM_THREADS")
+STARTED = "FE_CONTACT_ONE_THREAD"  # tells a process that all of these were set when it was started
+_started_so = STARTED in os.environ
+
+
+@contextmanager
+def starting() -> Iterator[None]:
+    """A process that is started meanwhile has one thread for as long as it lives."""
+    before = {name: os.environ.get(name) for name in (STARTED, *LIMITS)}
+    os.environ.update(dict.fromkeys(before, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
 
 
 @cache
@@ -54,6 +77,8 @@ class _OneThread(ContextDecorator):
         self._before: list[dict[str, Any]] = []
 
     def __enter__(self) -> None:
+        if _started_so:
+            return
         with self._lock:
             if self._inside == 0:
                 self._before = _libraries().info()
@@ -61,6 +86,8 @@ class _OneThread(ContextDecorator):
             self._inside += 1
 
     def __exit__(self, *_: object) -> None:
+        if _started_so:
+            return
         with self._lock:
             self._inside -= 1
             if self._inside == 0:

@@ -227,7 +227,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/march/impacts.py", "MOST_STEPS", ""): WORK,
     ("fe_contact/march/impacts.py", "FAINTEST", ""): WORK,
     ("fe_contact/waves/plan.py", "FLIGHT", ""): WORK,
-    ("lumped/solvers/hereditary/approach.py", "PieceMotion.piece", "NEWTON_STEPS"): WORK,
+    ("lumped/solvers/hereditary/pieces.py", "Pieces.solved", "NEWTON_STEPS"): WORK,
     ("lumped/solvers/mdr/march.py", "_to_turn", ""): GUESS,
     ("lumped/solvers/hereditary/rebound.py", "ReboundPieces._solved", "if ascends -> True"): WORK,
     ("fe_contact/budget/plan.py", "SOONEST_PEAK", ""): BEGINS,

@@ -27,6 +27,7 @@ from fe_contact.studies.sweep.table import SweepTable
 from lumped import Scene
 from lumped.errors import BadInput
 from lumped.result.result import UNITS
+from lumped.scene.tables import Known
 
 SPEED, DASHPOT = "striker.velocity", "target.material.C1"
 TEN_TO_SIX = {"linear": [0.1, 1.0], "count": 10**6}
@@ -176,15 +177,38 @@ def test_values_are_those_of_single_runs(tmp_path: Path) -> None:
 
 def test_a_case_without_enough_memory_is_a_row_with_its_reason(monkeypatch: pytest.MonkeyPatch) -> None:
     def refused(scene: Scene, *_: Any) -> Any:
+        yield from ()
         if scene.velocity > 0.1:
             raise MemoryError
         return fe_contact.run(scene, 1e-2, "hertz")
 
-    monkeypatch.setattr(study, "simulate", refused)
+    monkeypatch.setattr(study, "simulation", refused)
     table = fe_contact.sweep(tables(axes={SPEED: [0.2, 0.05]}))
     assert table.converged.tolist() == [[False], [True]]
     assert not table.refused.any()
     assert "out of memory" in table.reasons[0, 0]
+
+
+def test_what_no_case_changes_is_read_once_and_a_fault_told_of_every_case() -> None:
+    base, known = load(tables(axes={SPEED: [0.1]})).base, Known()
+    (one, _), (other, _) = (base.read({SPEED: speed}, known) for speed in (0.1, 0.2))
+    assert one.material is other.material
+    changes: list[dict[str, object]] = [
+        {SPEED: 0.3, DASHPOT: 1e4},
+        {"striker.radius": 0.01},
+        {"model.gravity": 9.81},
+        {DASHPOT: 1.8e4},
+    ]
+    for overrides in changes:
+        assert base.read(overrides, known) == base.read(overrides)
+    faulty: list[dict[str, object]] = [{"target.material.nu": 7}, {"target.mass": -1}, {"target.material.nu": 7}]
+    for overrides in faulty:
+        said = []
+        for parts in (known, None):
+            with pytest.raises(BadInput) as refused:
+                base.read(overrides, parts)
+            said.append(str(refused.value))
+        assert said[0] == said[1]
 
 
 def test_the_tolerance_may_be_an_axis() -> None:

@@ -23,7 +23,7 @@ from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 from fe_contact.errors import WorkerLost, import_of
 from fe_contact.progress import Progress, silent
-from fe_contact.threads import one_thread
+from fe_contact.threads import one_thread, starting
 from lumped.errors import BadInput, Fault, shown
 from lumped.schema.keys import Count
 
@@ -182,7 +182,8 @@ class Processes(Executor):
         with self._lock:
             if self._ended:
                 raise WorkerLost
-            with signals_held():  # a process that is interrupted while it starts would print how far it came
+            # a process that is interrupted while it starts would print how far it came
+            with starting(), signals_held():
                 process = context.Process(target=_serve, args=(its,), daemon=False)  # it may ask others
                 process.start()
             self._known.add(process)

@@ -21,6 +21,7 @@ from lumped.solvers.hereditary.approach import Approach
 from lumped.solvers.hereditary.closing import Closing
 from lumped.solvers.hereditary.march import Settings
 from lumped.solvers.hereditary.path import HereditaryPhase
+from lumped.solvers.hereditary.pieces import Followed, alone
 from lumped.solvers.hereditary.problem import Hereditary
 from lumped.solvers.hereditary.rebound import Rebound
 
@@ -30,6 +31,7 @@ LOOSEST, TIGHTEST = 1e-5, 1e-13  # of the integration's relative tolerance: safe
 NEXT = 1e-2  # work: times the tolerance, where a bar was missed
 # The pieces chosen with few nodes are solved again with more, which err less by orders: the difference is the bar.
 FEW, MORE = 12, 18
+MEET = 1e-9  # rounding: where two phases meet they differ by less, relatively
 SAFETY = 1.5  # safety: of the bars, over the change from few points to more
 
 
@@ -53,14 +55,21 @@ class Course:
 
     def highest(self, field: int) -> tuple[float, float]:
         """When a field is highest, 0 the depth and 3 the force, and how high."""
-        return max((phase.highest(field) for phase in self.phases), key=lambda found: found[1])
+        samples = [phase.samples(field) for phase in self.phases]
+        tops = [float(values.max()) for values in samples]
+        near = max(tops) - MEET * abs(max(tops))
+        every = zip(self.phases, samples, tops, strict=True)
+        return max(
+            (phase.highest(field, values) for phase, values, top in every if top >= near), key=lambda one: one[1]
+        )
 
     def at(self, times: Array) -> Array:
         """Depth, velocity, force and the edge's depth, shape (4, n); a striker at rest stays so, without force."""
         found = np.empty((4, times.size))
         for phase, inside in self._shared(times):
             found[:, inside] = phase.at(times[inside])
-        found[1:3, self._rested(times)] = 0.0
+        if self.end is End.REST:
+            found[1:3, self._rested(times)] = 0.0
         return found
 
     def force(self, times: Array) -> Array:
@@ -68,23 +77,24 @@ class Course:
         found = np.empty(times.size)
         for phase, inside in self._shared(times):
             found[inside] = phase.force(times[inside])
-        found[self._rested(times)] = 0.0
+        if self.end is End.REST:
+            found[self._rested(times)] = 0.0
         return found
 
     def _shared(self, times: Array) -> Iterator[tuple[HereditaryPhase, NDArray[np.bool_]]]:
         """The phases that know some of the times, and which; where two meet the later one speaks."""
-        which = np.searchsorted(self._ends[:-1], times, side="right")
+        which = self._ends[:-1].searchsorted(times, side="right")
         for i, phase in enumerate(self.phases):
             if (inside := which == i).any():
                 yield phase, inside
 
     def _rested(self, times: Array) -> NDArray[np.bool_]:
-        """Which of the times are those of a striker at rest."""
-        return times > (self._ends[-1] * (1.0 + 1e-12) if self.end is End.REST else np.inf)
+        """Which of the times are those after the last piece."""
+        return np.asarray(times > self._ends[-1] * (1.0 + 1e-12))
 
     @cached_property
-    def _ends(self) -> list[float]:
-        return [float(phase.times[-1]) for phase in self.phases]
+    def _ends(self) -> Array:
+        return np.array([phase.times[-1] for phase in self.phases])
 
 
 class Solve(Protocol):
@@ -92,7 +102,7 @@ class Solve(Protocol):
 
     def __call__(
         self, problem: Hereditary, end_time: float, settings: Settings, before: Course | None = None
-    ) -> Course: ...
+    ) -> Followed[Course]: ...
 
 
 class HereditaryLaw(ABC):
@@ -105,6 +115,14 @@ class HereditaryLaw(ABC):
     def solve(self) -> Solve | None:
         """One integration, where one of :func:`once` says all; None where contacts follow one another in steps."""
 
+    @abstractmethod
+    def simulation(self, scene: Scene, tolerance: float) -> Followed[Result]:
+        """As `simulate`, by pieces that may be solved together with those of other impacts."""
+
+    def simulate(self, scene: Scene, tolerance: float) -> Result:
+        """The impacts of a scene to this tolerance. Raises NotReached."""
+        return alone(self.simulation(scene, tolerance))
+
 
 class Inexact(Protocol):
     """What a law itself leaves open of an integration: errors of quantities, and of the force, N; SI."""
@@ -112,7 +130,9 @@ class Inexact(Protocol):
     def __call__(self, problem: Hereditary, course: Course) -> tuple[dict[str, float], float]: ...
 
 
-def simulate(name: str, scene: Scene, tolerance: float, solve: Solve, inexact: Inexact | None = None) -> Result:
+def simulation(
+    name: str, scene: Scene, tolerance: float, solve: Solve, inexact: Inexact | None = None
+) -> Followed[Result]:
     """Integrate tighter and tighter until every bar is within the tolerance. Raises NotReached.
 
     No integration mends what is `inexact`, which the bars have on top.
@@ -121,8 +141,8 @@ def simulate(name: str, scene: Scene, tolerance: float, solve: Solve, inexact: I
     problem, last = problem_of(scene), scene.end_time / time
     rtol, evaluations = min(max(tolerance * LOCAL_SHARE, TIGHTEST), LOOSEST), 0
     while True:
-        few = solve(problem, last, Settings(rtol, FEW))
-        more = solve(problem, last, Settings(rtol, MORE), few)
+        few = yield from solve(problem, last, Settings(rtol, FEW))
+        more = yield from solve(problem, last, Settings(rtol, MORE), few)
         evaluations += FEW * few.steps + MORE * more.steps
         fine = answer_of(scene, problem, more)
         quantities, force_error = bars(fine, answer_of(scene, problem, few), SAFETY)
@@ -150,7 +170,7 @@ def problem_of(scene: Scene) -> Hereditary:
 def once(scene: Scene, rtol: float, solve: Solve) -> Answer:
     """One integration of a scene, without bars. Raises NotReached."""
     problem = problem_of(scene)
-    return answer_of(scene, problem, solve(problem, scene.end_time / problem.scales.time, Settings(rtol)))
+    return answer_of(scene, problem, alone(solve(problem, scene.end_time / problem.scales.time, Settings(rtol))))
 
 
 def answer_of(scene: Scene, problem: Hereditary, course: Course) -> Answer:

@@ -9,9 +9,11 @@ from typing import ClassVar, Protocol
 
 from lumped.errors import BadInput, Fault
 from lumped.laws._damping import Family
+from lumped.laws._hereditary import HereditaryLaw
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.schema.keys import Key, Sets
+from lumped.solvers.hereditary.pieces import Followed, alone
 from lumped.targets import HalfSpace
 
 
@@ -77,9 +79,16 @@ def simulate(model: Law, scene: Scene, tolerance: float = 1e-6) -> Result:
         with concurrent.futures.ProcessPoolExecutor() as pool:
             found = list(pool.map(restitution, numpy.linspace(0.1, 2.0, 10_000), chunksize=100))
     """
+    return alone(simulation(model, scene, tolerance))
+
+
+def simulation(model: Law, scene: Scene, tolerance: float) -> Followed[Result]:
+    """As :func:`simulate`; by pieces, where a law has memory: those of many impacts are solved together."""
     if model.needs_mass:
         check_mass(scene)
     with scene.addressed():
+        if isinstance(model, HereditaryLaw):
+            return (yield from model.simulation(scene, tolerance))
         return model.simulate(scene, tolerance)
 
 

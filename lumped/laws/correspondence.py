@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from lumped.errors import FeContactError
 from lumped.laws._force_law import ForceLaw
-from lumped.laws._hereditary import Course, HereditaryLaw, Solve, once, simulate
+from lumped.laws._hereditary import Course, HereditaryLaw, Solve, once, simulation
 from lumped.laws._parameters import EXIT_KEY
 from lumped.laws.base import LawKind, check_load_curve, waves
 from lumped.laws.mdr import ImpactScales
@@ -29,10 +29,11 @@ from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
 from lumped.schema.keys import Choice, Key, keys_of
-from lumped.solvers.hereditary.approach import DEPTH, approach
+from lumped.solvers.hereditary.approach import approach
 from lumped.solvers.hereditary.closing import Closing, close
 from lumped.solvers.hereditary.march import Settings
 from lumped.solvers.hereditary.path import HereditaryPhase, Path, SinceTouch, UntilEnd
+from lumped.solvers.hereditary.pieces import DEPTH, Followed
 from lumped.solvers.hereditary.problem import Hereditary
 from lumped.solvers.point.bodies import TINY, Bodies, Dent, Stage, State, Step
 from lumped.solvers.point.memory import RULES, FreeSurface, HeldSurface, HereditaryLoad, StepLoad, rule_of
@@ -203,10 +204,10 @@ class Correspondence(HereditaryLaw):
         """That which ends with the force."""
         return solve if self.exit == "force" else None
 
-    def simulate(self, scene: Scene, tolerance: float) -> Result:
-        """The impacts of a scene to this tolerance. Raises NotReached."""
+    def simulation(self, scene: Scene, tolerance: float) -> Followed[Result]:
+        """The impacts of a scene to this tolerance; several, or another exit, in steps. Raises NotReached."""
         if self.exit == "force" and scene.motion.impacts == 1:
-            return simulate(self.name, scene, tolerance, solve)
+            return (yield from simulation(self.name, scene, tolerance, solve))
         return law_of(scene, self.exit, self.memory).simulate(scene, tolerance)
 
 
@@ -238,13 +239,13 @@ def estimate(scene: Scene, by: Solve | None = None) -> ImpactScales:
     )
 
 
-def solve(problem: Hereditary, end_time: float, settings: Settings, before: Course | None = None) -> Course:
+def solve(problem: Hereditary, end_time: float, settings: Settings, before: Course | None = None) -> Followed[Course]:
     """One integration from touch to the first F = 0, or to `end_time` in its own units. Raises NotReached."""
-    inward = approach(problem, end_time, settings, before.inward if before else None)
+    inward = yield from approach(problem, end_time, settings, before.inward if before else None)
     if not inward.turned:
         return Course((_phase(inward.path),), End.REST if inward.rests else End.TIME, inward.steps, inward)
     known = before.outward if before and isinstance(before.outward, Closing) else None
-    closing = close(problem, inward, end_time, settings, known)
+    closing = yield from close(problem, inward, end_time, settings, known)
     steps = inward.steps + closing.steps
     phases = (_phase(closing.path),) if closing.path else ()
     if closing.last is None:

@@ -15,7 +15,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from lumped.laws._hereditary import SAFETY, Course, HereditaryLaw, Solve, simulate
+from lumped.laws._hereditary import SAFETY, Course, HereditaryLaw, Solve, simulation
 from lumped.laws.base import LawKind, check_load_curve, waves
 from lumped.materials import Relaxation
 from lumped.numbers import Array, running_integral
@@ -23,9 +23,10 @@ from lumped.result.history import End
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.solvers.hereditary import rebound as back
-from lumped.solvers.hereditary.approach import DEPTH, approach
+from lumped.solvers.hereditary.approach import approach
 from lumped.solvers.hereditary.march import Settings
 from lumped.solvers.hereditary.path import ByField, HereditaryPhase, SinceTouch
+from lumped.solvers.hereditary.pieces import DEPTH, Followed
 from lumped.solvers.hereditary.problem import Hereditary
 
 ROWS, LOOKS = 60, 9  # of the rebound, and depths, at which what overlaps bend by is told
@@ -42,9 +43,9 @@ class Ting(HereditaryLaw):
         """That of the whole contact."""
         return solve
 
-    def simulate(self, scene: Scene, tolerance: float) -> Result:
+    def simulation(self, scene: Scene, tolerance: float) -> Followed[Result]:
         """One impact to this tolerance. Raises NotReached."""
-        return simulate(self.name, scene, tolerance, solve, bent)
+        return simulation(self.name, scene, tolerance, solve, bent)
 
 
 def of(scene: Scene) -> Ting:
@@ -54,14 +55,14 @@ def of(scene: Scene) -> Ting:
     return Ting()
 
 
-def solve(problem: Hereditary, end_time: float, settings: Settings, before: Course | None = None) -> Course:
+def solve(problem: Hereditary, end_time: float, settings: Settings, before: Course | None = None) -> Followed[Course]:
     """One integration from touch to the end of contact, or to `end_time` in its own units. Raises NotReached."""
-    inward = approach(problem, end_time, settings, before.inward if before else None)
+    inward = yield from approach(problem, end_time, settings, before.inward if before else None)
     growing = HereditaryPhase(inward.path, SinceTouch(), DEPTH, DEPTH)
     if not inward.turned:
         return Course((growing,), End.REST if inward.rests else End.TIME, inward.steps, inward)
     known = before.outward if before and isinstance(before.outward, back.Rebound) else None
-    outward = back.rebound(problem, inward, end_time, settings, known)
+    outward = yield from back.rebound(problem, inward, end_time, settings, known)
     shrinking = HereditaryPhase(outward.path, ByField(outward.path), back.DEPTH, back.EDGE)
     return Course((growing, shrinking), outward.end, inward.steps + outward.steps, inward, outward)
 

@@ -37,10 +37,12 @@ class LoadCurve(ABC):
     Everything is per unit contact modulus E* = E/(1-nu^2): an axisymmetric curve gives F/E* in m^2, pressure/E*
     in 1 and energy/E* in m^3; a plane one gives them per unit length, F/E* in m and energy/E* in m^2, and its
     contact radius is the half-width. Depths and radii in m; arguments are scalars or arrays; a depth below zero
-    counts as zero. `accuracy`: relative, of forces and radii.
+    counts as zero. `accuracy`: relative, of forces and radii. `closed`: a form that answers a row of depths the same to
+    the bit whatever rows are beside it, with no iteration that ends for all of them at once.
     """
 
     accuracy: ClassVar[float] = 1e-12
+    closed: ClassVar[bool] = False
 
     @property
     def extent(self) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import pi, radians, tan
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,6 +23,7 @@ class ConeCurve(HalfSpaceCurve):
     """
 
     angle: float
+    closed: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if not 0.0 < self.angle < 90.0:

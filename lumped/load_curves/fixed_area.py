@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,6 +18,7 @@ class FixedArea(LoadCurve):
     """A linear curve F = S depth: the whole flat end of half-width or `radius` touches at once."""
 
     radius: float
+    closed: ClassVar[bool] = True
 
     @property
     @abstractmethod

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,6 +19,7 @@ class Hertz(HalfSpaceCurve):
     """F = (4/3) E* sqrt(R) depth^(3/2), a = sqrt(R depth)."""
 
     radius: float
+    closed: ClassVar[bool] = True
 
     def force(self, depth: ArrayLike) -> Real:
         """F/E*, m^2."""

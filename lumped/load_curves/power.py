@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import gamma, inf, pi, sqrt
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,6 +24,7 @@ class Power(HalfSpaceCurve):
 
     coefficient: float
     exponent: float
+    closed: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if not 0.0 < self.coefficient < inf:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -26,6 +27,7 @@ class SneddonSphere(HalfSpaceCurve):
     """F = E* [(R^2 + a^2) u - a R], depth = a u, with u = artanh(a/R): a stays below R at every depth."""
 
     radius: float
+    closed: ClassVar[bool] = True
 
     @property
     def extent(self) -> float:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated, ClassVar, Protocol, TypeVar
+from typing import Annotated, ClassVar, Protocol, TypeVar, cast
 
 from lumped.errors import BadInput, Fault
 from lumped.materials import Material
@@ -197,6 +197,8 @@ Impact = TypeVar("Impact", bound=Lawful)
 Pressed = TypeVar("Pressed")
 B = TypeVar("B")
 Made = TypeVar("Made")
+R = TypeVar("R", bound=Record)
+Known = dict[str, tuple[object, object]]  # by the path of a table: the last one without a fault, and what it gave
 
 
 class TableReader:
@@ -263,6 +265,11 @@ class SceneReader(TableReader):
 
     TABLES = ("striker", "target", "model", "motion", "law", "numerics")
 
+    def __init__(self, source: str, raw: Table, folder: Path = Path(), known: Known | None = None) -> None:
+        """`known`: parts of other scenes of this folder, taken where the very same table describes them here."""
+        super().__init__(source, raw, folder)
+        self.known: Known = {} if known is None else known
+
     def scene(self, kind: Callable[..., Impact], law_known: bool = True) -> tuple[Impact, Table]:
         """The scene and the raw numerics; raises BadInput when anything is wrong.
 
@@ -272,14 +279,13 @@ class SceneReader(TableReader):
         lawful = "law" in self.raw or not law_known
         alone = lawful and "shape" not in self.table("striker", required=False, quiet=True)
         bodies = self.masses_alone() if alone else self.bodies()
-        model = self.checked("model", self.table("model", required=False), keys_of(Model))
-        motion = self.checked("motion", self.table("motion", required=False), keys_of(Motion))
+        model, motion = self.record(Model), self.record(Motion)
         numerics = self.table("numerics", required=False)
         if alone or bodies["target"] is not None:
             self.inertia(model, bodies.get("target"))
         if self.faults:
             raise BadInput(self.faults)
-        built = kind(**bodies, law=law, model=Model(**model), motion=Motion(**motion), name=name, source=self.source)
+        built = kind(**bodies, law=law, model=model, motion=motion, name=name, source=self.source)
         if law is not None and law_known:
             built.check_law()
         return built, numerics
@@ -288,12 +294,20 @@ class SceneReader(TableReader):
         """The scene without its motion; raises BadInput when anything is wrong."""
         name = self.name()
         bodies = self.bodies(optional(STRIKER_KEYS))
-        model = self.checked("model", self.table("model", required=False), keys_of(Model))
+        model = self.record(Model)
         numerics = self.table("numerics", required=False)
         if self.faults:
             raise BadInput(self.faults)
         own = {key: bodies[key] for key in ("shape", "material", "target", "striker_material")}
-        return kind(**own, model=Model(**model), name=name, source=self.source), numerics
+        return kind(**own, model=model, name=name, source=self.source), numerics
+
+    def record(self, kind: type[R]) -> R:
+        """The record of the table with its name; what is missing, or has a fault, as by default."""
+        return self.once(
+            kind.name,
+            self.raw.get(kind.name),
+            lambda: kind(**self.checked(kind.name, self.table(kind.name, required=False), keys_of(kind))),
+        )
 
     def bodies(self, striker_keys: Mapping[str, Key] = STRIKER_KEYS) -> Table:
         """Striker, target and material of a scene with geometry; None for what has a fault."""
@@ -339,6 +353,19 @@ class SceneReader(TableReader):
 
     def body(self, part: str, folder: Folder[Part[B]], common: Mapping[str, Key]) -> tuple[Table, B | None]:
         """A body's checked common values, and what the member of `folder` makes of its own keys."""
+        return self.once(part, self.raw.get(part), lambda: self.read_body(part, folder, common))
+
+    def once(self, part: str, table: object, read: Callable[[], Made]) -> Made:
+        """What is read of a part's table, which may be known; with a fault it is read again, and the fault noted."""
+        if part in self.known and self.known[part][0] is table:
+            return cast(Made, self.known[part][1])
+        faults, made = len(self.faults), read()
+        if len(self.faults) == faults:
+            self.known[part] = table, made
+        return made
+
+    def read_body(self, part: str, folder: Folder[Part[B]], common: Mapping[str, Key]) -> tuple[Table, B | None]:
+        """The same, of its table."""
         table = self.table(part)
         rest = {key: value for key, value in table.items() if key != "material"}
         if part not in self.raw:
@@ -357,14 +384,14 @@ class SceneReader(TableReader):
         if not body:
             return None
         path, table = f"{part}.material", self.table("material", inside=part)
-        return self.network(path, table) if table else None
+        return self.once(path, body.get("material"), lambda: self.network(path, table)) if table else None
 
-    def inertia(self, model: Table, target: Target | None) -> None:
+    def inertia(self, model: Model, target: Target | None) -> None:
         """Whether the target can have the inertia asked for, and a density for it."""
         part = "striker" if target is not None and not target.deformable else "target"
         material = self.table(part, required=False, quiet=True).get("material")
         density = material.get("density") if isinstance(material, Mapping) else None
-        self.faults += inertia_faults(self.source, model.get("inertia", False), density, target)
+        self.faults += inertia_faults(self.source, model.inertia, density, target)
 
     def table(self, key: str, inside: str = "", required: bool = True, quiet: bool = False) -> Table:
         """The table `key`, empty when it is missing or no table: a fault if required, unless `quiet`."""

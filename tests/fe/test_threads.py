@@ -90,6 +90,14 @@ def test_every_front_door_has_one_thread(monkeypatch: pytest.MonkeyPatch) -> Non
     assert blas_threads() == {2}
 
 
+def test_a_process_that_is_started_has_one_thread_and_loads_no_more_than_its_call() -> None:
+    heavy = "sorted({'scipy.linalg', 'threadpoolctl', 'matplotlib', 'skfem'} & {*__import__('sys').modules})"
+    calls = {"loaded": partial(eval, heavy), "limits": partial(os.getenv, "OPENBLAS_NUM_THREADS")}
+    before = dict(os.environ)
+    assert dict(journal.measured(calls, jobs=2)) == {"loaded": [], "limits": "1"}
+    assert dict(os.environ) == before
+
+
 def test_the_last_one_out_restores_the_number() -> None:
     """Two threads of a process, each in a run of its own, one leaving while the other is still inside."""
     before = blas_threads()

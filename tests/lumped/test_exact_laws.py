@@ -22,6 +22,7 @@ from lumped.result.history import End
 from lumped.scene.tables import Motion
 from lumped.shapes.cone import Cone
 from lumped.shapes.power import PowerProfile
+from lumped.solvers.hereditary.pieces import alone
 from lumped.solvers.mdr.nest import REST, Adaptive, Grid, Nest, Prescribed, coarse, limit, predicted_turn, problem_of
 from lumped.solvers.mdr.row import SERIES_BELOW, Instant, fading
 
@@ -292,7 +293,7 @@ def test_the_bars_cover_the_poorer_of_the_two_integrations_too(
     problem = _hereditary.problem_of(scene)
     settings = _hereditary.Settings(found.numerics["rtol"], _hereditary.FEW)
     poorer = _hereditary.answer_of(
-        scene, problem, law.solve(problem, scene.end_time / scene.elastic_contact_time, settings)
+        scene, problem, alone(law.solve(problem, scene.end_time / scene.elastic_contact_time, settings))
     )
     for name, value in poorer.values.items():
         bar, true = found.quantities[name].error, truth.quantities[name].value

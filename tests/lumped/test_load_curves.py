@@ -9,6 +9,7 @@ import pytest
 
 from lumped import Material, Relaxation, Scene, laws, simulate
 from lumped.load_curves import ConeCurve, Hertz, LoadCurve, Power, SneddonSphere
+from lumped.load_curves.fixed_area import Column, PunchCurve
 from lumped.load_curves.sampled import SampledCurve
 from lumped.load_curves.sneddon_sphere import SHALLOW
 from lumped.scene.scene import Answered
@@ -32,6 +33,17 @@ def test_contact_radius_and_depth_are_inverse(curve: LoadCurve) -> None:
     np.testing.assert_allclose(curve.depth(curve.contact_radius(DEPTHS)), DEPTHS, rtol=1e-13)
     scalars = [curve.contact_radius(float(depth)) for depth in DEPTHS]
     np.testing.assert_allclose(scalars, curve.contact_radius(DEPTHS), rtol=1e-14)
+
+
+@pytest.mark.parametrize("curve", [*CURVES, PunchCurve(RADIUS), Column(RADIUS, RADIUS)], ids=lambda c: type(c).__name__)
+def test_a_closed_form_answers_a_row_of_depths_the_same_in_any_company(curve: LoadCurve) -> None:
+    rng = np.random.default_rng(8)
+    rows = RADIUS * 10.0 ** rng.uniform(-12.0, 0.0, (9, 13))
+    rows[4:] *= 1e-3  # shallow ones beside deep ones
+    assert curve.closed
+    together, apart = curve.force_and_slope(rows), [curve.force_and_slope(row) for row in rows]
+    for i in range(2):
+        assert np.array_equal(together[i], np.array([one[i] for one in apart]))
 
 
 @pytest.mark.parametrize("curve", CURVES, ids=lambda c: type(c).__name__)

@@ -9,10 +9,15 @@ import numpy as np
 import pytest
 from numpy.polynomial import chebyshev as reference
 
-from lumped import Scene
+from lumped import Scene, simulate
+from lumped.errors import FeContactError
 from lumped.laws import correspondence, ting
 from lumped.laws._hereditary import once
+from lumped.laws.base import simulation
+from lumped.numbers import Array
+from lumped.result.result import Result
 from lumped.solvers.hereditary.path import Path, chebyshev
+from lumped.solvers.hereditary.pieces import Followed, together
 
 
 def test_polynomials_are_chebyshev_s_of_few_places_and_of_many() -> None:
@@ -42,3 +47,59 @@ def test_the_force_alone_is_that_of_the_columns(law: ModuleType, impact: Callabl
         answer = once(scene, 1e-6, law.solve)
         times = np.union1d(answer.rows(scene), np.linspace(0.0, 1.1 * answer.times[-1], 300))
         assert answer.columns.force(times) == pytest.approx(answer.columns(times)[2], rel=1e-12)
+
+
+SPHERE, LAYER, RING = "polymer-sphere", "polymer-layer", "rod-in-ring"
+PRONY = {"law": "prony", "E_inf": 1e6, "E": [1e6, 5e5], "tau": [1e-3, 1e-2], "nu": 0.45}
+SOLID = {"law": "kelvin_voigt", "E": 1e6, "eta": 2e3, "nu": 0.45}
+COMPANY: list[tuple[str, dict[str, object]]] = [
+    (SPHERE, {"striker.velocity": 0.01}), (SPHERE, {"striker.velocity": 0.013}), (SPHERE, {"striker.velocity": 0.031}),
+    (SPHERE, {"striker.radius": 0.01}), (SPHERE, {"striker.velocity": 0.2}),
+    (SPHERE, {"target.material": PRONY}), (SPHERE, {"target.material": SOLID}),
+    (SPHERE, {"target.material": SOLID, "model.gravity": 9.81}), ("polymer-cone", {}), (LAYER, {}), (RING, {}),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("law", [ting, correspondence])
+def test_an_impact_is_the_same_to_the_bit_in_any_company(law: ModuleType) -> None:
+    scenes = [Scene.load(name, keys) for name, keys in COMPANY]
+    found = [simulate(law.of(scene), scene, 1e-3) for scene in scenes]
+    for order in (range(len(scenes)), [10, 1, 0, 3, 2, 5, 1, 7, 6, 4, 9, 8]):
+        company = together(simulation(law.of(scenes[i]), scenes[i], 1e-3) for i in order)
+        for i, one in zip(order, company, strict=True):
+            assert one.quantities == found[i].quantities, COMPANY[i]
+            assert np.array_equal(one.history.force, found[i].history.force), COMPANY[i]
+            assert one.work == found[i].work
+
+
+def test_impacts_of_one_kind_cost_no_more_calls_than_the_one_that_needs_most(monkeypatch: pytest.MonkeyPatch) -> None:
+    scenes = [Scene.load(SPHERE, {"striker.velocity": speed}) for speed in np.linspace(0.01, 0.04, 9)]
+    calls, inverse = list[int](), np.linalg.inv
+
+    def counted(matrices: Array) -> object:
+        calls.append(len(matrices))
+        return inverse(matrices)
+
+    monkeypatch.setattr(np.linalg, "inv", counted)
+    apart = [once(scene, 1e-6, correspondence.solve) for scene in scenes]
+    each = len(calls)
+    together(simulation(correspondence.of(scene), scene, 1e-3) for scene in scenes)
+    assert len(calls) - each < 0.5 * each
+    assert max(calls) == len(apart)
+
+
+def test_an_impact_that_fails_takes_none_with_it() -> None:
+    """Depths beyond a load curve are tried by one of them alone."""
+    scenes = [Scene.load(LAYER, {"striker.velocity": speed}) for speed in (0.01, 0.02, 2.0)]
+
+    def asked(scene: Scene) -> Followed[Result | FeContactError]:
+        try:
+            return (yield from simulation(correspondence.of(scene), scene, 1e-3))
+        except FeContactError as failure:
+            return failure
+
+    well, also, failed = together(map(asked, scenes))
+    assert isinstance(failed, FeContactError), failed
+    for scene, one in zip(scenes, (well, also), strict=False):
+        assert isinstance(one, Result), one
+        assert one.quantities == simulate(correspondence.of(scene), scene, 1e-3).quantities

@@ -20,7 +20,7 @@ from fe_contact.settings import Given
 from lumped.errors import BadInput, Fault, shown
 from lumped.numbers import Array
 from lumped.scene.scene import Scene
-from lumped.scene.tables import SceneReader
+from lumped.scene.tables import Known, SceneReader
 from lumped.schema import Table
 from lumped.schema.files import SCENES, exists, overridden, parsed
 from lumped.schema.keys import Count, File, Key, Number, Text, read_table
@@ -116,13 +116,16 @@ class BaseScene:
     source: str
     folder: Path
 
-    def read(self, overrides: Mapping[str, object]) -> tuple[Scene, Table]:
-        """The scene with some keys set, and its checked settings; raises BadInput with every fault."""
+    def read(self, overrides: Mapping[str, object], known: Known | None = None) -> tuple[Scene, Table]:
+        """The scene with some keys set, and its checked settings; raises BadInput with every fault.
+
+        ``known``: parts of scenes that were read of this one before.
+        """
         tables = overridden(self.tables, overrides, self.source)
         numerics = tables.get("numerics", {})
         refused = settings.faults(numerics, self.source) if isinstance(numerics, Mapping) else []
         try:
-            scene, given = SceneReader(self.source, tables, self.folder).scene(Scene)
+            scene, given = SceneReader(self.source, tables, self.folder, known).scene(Scene)
         except BadInput as bad:
             raise BadInput([*bad.faults, *refused]) from None
         if refused:

@@ -18,7 +18,7 @@ from hashlib import sha256
 from itertools import islice, product
 from pathlib import Path
 
-from fe_contact.methods import simulate
+from fe_contact.methods import simulation
 from fe_contact.progress import Progress, silent
 from fe_contact.studies.journal import suite
 from fe_contact.studies.sweep.cases import BaseScene, Sweep
@@ -27,11 +27,14 @@ from fe_contact.studies.workers import answers, checked_jobs, workers
 from fe_contact.threads import one_thread
 from lumped.errors import BadInput, CannotWrite, FeContactError
 from lumped.result.result import UNITS
+from lumped.scene.tables import Known
 from lumped.schema import Table
+from lumped.solvers.hereditary.pieces import Followed, together
 
 DIGITS = 32  # of a digest: no two of 1e18 rows share one
 SHARES = 8  # batches of a worker: who is done first waits for an eighth of a share at most
 BATCH, MOST = 2.0, 500  # work: s that a batch takes, which is lost with its worker, and its answers; a file each
+TOGETHER = 100  # work: answers whose pieces are solved in one array, of some kilobytes each
 HELD = 64  # batches held while the table is read, some hundred kilobytes each
 # keys, or their last parts, that change no mesh: cases that differ in these alone follow one another
 UNMESHED = ("velocity", "mass", "gravity", "direction", "impacts", "end_time")
@@ -150,24 +153,29 @@ def _rows_of(folder: Path, name: str) -> dict[str, Table]:
 
 def answer(base: BaseScene, tolerance: float | None, batch: Iterable[Question]) -> dict[str, Table]:
     """Rows of a batch by their digests, in any process; a failure with a name is a row too."""
+    rows, left, known = dict[str, Table](), iter(batch), Known()
     with one_thread:
-        return {question.digest: _row(base, tolerance, question) for question in batch}
+        while some := [*islice(left, TOGETHER)]:
+            begun = time.process_time()
+            found = together(_row(base, known, tolerance, question) for question in some)
+            share = {"cpu_s": (time.process_time() - begun) / len(some)}
+            rows |= {question.digest: row | share for question, row in zip(some, found, strict=True)}
+    return rows
 
 
-def _row(base: BaseScene, tolerance: float | None, question: Question) -> Table:
-    begun = time.process_time()
+def _row(base: BaseScene, known: Known, tolerance: float | None, question: Question) -> Followed[Table]:
     row: Table = {"converged": False, "refused": False, "reason": "", "values": {}}
     try:
-        scene, given = base.read(question.overrides)
+        scene, given = base.read(question.overrides, known)
         own = None if "numerics.tolerance" in question.overrides else tolerance
-        found = simulate(scene, question.method, given, own)
+        found = yield from simulation(scene, question.method, given, own)
         row |= {"converged": found.converged, "reason": found.message}
         row["values"] = {name: (one.value, one.error) for name, one in found.quantities.items() if name in UNITS}
     except FeContactError as failure:
         row |= {"refused": isinstance(failure, BadInput), "reason": "; ".join(str(failure).splitlines())}
     except MemoryError:
         row["reason"] = "out of memory; cure: a larger tolerance, fewer numerics.elements_per_contact, or more memory"
-    return row | {"cpu_s": time.process_time() - begun}
+    return row
 
 
 def run(

@@ -14,9 +14,10 @@ import numpy as np
 
 from lumped.errors import BadInput, NotReached, TooManySteps
 from lumped.numbers import Array
-from lumped.solvers.hereditary.approach import DEPTH, FORCE, VELOCITY, Approach, PieceMotion, follow
+from lumped.solvers.hereditary.approach import Approach, follow
 from lumped.solvers.hereditary.march import SHORTEST, Settings, tail
 from lumped.solvers.hereditary.path import Path
+from lumped.solvers.hereditary.pieces import DEPTH, FORCE, VELOCITY, Followed, PieceAsked, to_end
 from lumped.solvers.hereditary.problem import Hereditary
 
 MOST_ATTEMPTS = 300  # work: stretches followed until the contact has ended
@@ -47,7 +48,7 @@ class Closing:
 
 def close(
     problem: Hereditary, inward: Approach, end_time: float, settings: Settings, before: Closing | None = None
-) -> Closing:
+) -> Followed[Closing]:
     """From an approach that has turned to the first F = 0, or to `end_time`. Raises NotReached, TooManySteps.
 
     `before` is the same found with fewer nodes: its pieces are kept, and it is where Newton starts.
@@ -55,7 +56,7 @@ def close(
     path, limit = inward.path.until(float(inward.path.breaks[-1])), end_time**0.5
     steps, largest = 0, inward.largest
     if before and before.last:
-        known = _again(problem, path, settings, largest, before, before.last)
+        known = yield from _again(problem, path, settings, largest, before, before.last)
         if known and known.end <= end_time:
             return known
     hoped: Closing | None = None
@@ -67,7 +68,9 @@ def close(
         earlier, state = _before(path, begin), path.state(begin)
         guess, last = _guess(problem, begin, state, settings, zero, hoped), None
         if 0.0 < guess.duration < math.inf:
-            last = shut(problem, state, guess, settings, NEARLY_CLOSED * settings.rtol, settings.rtol * largest)
+            last = yield from shut(
+                problem, state, guess, settings, NEARLY_CLOSED * settings.rtol, settings.rtol * largest
+            )
         hoped = _closing(earlier, begin, last, steps) if last else None
         if last and hoped and last.fits and hoped.end <= end_time:
             return hoped
@@ -75,7 +78,7 @@ def close(
         target = min((begin**2 + min(0.5 * guess.duration or most, most)) ** 0.5, limit)
         if target - begin <= SHORTEST * begin:
             raise NotReached(f"the end of contact was lost in rounding at {begin**2 * problem.scales.time:.6g} s")
-        more = follow(problem, (begin, target), state, target - begin, _released, settings, largest)
+        more = yield from follow(problem, (begin, target), state, target - begin, _released, settings, largest)
         steps += more.steps
         path = earlier.joined(more.path) if earlier else more.path
     raise TooManySteps(f"contact had not ended after {MOST_ATTEMPTS} attempts: accepted: an earlier end_time")
@@ -83,15 +86,15 @@ def close(
 
 def _again(
     problem: Hereditary, path: Path, settings: Settings, largest: float, before: Closing, over: Path
-) -> Closing | None:
+) -> Followed[Closing | None]:
     """The closing in the pieces of one found before, `over` its last piece; None where they will not do."""
     begin, steps = before.path.end if before.path else 0.0, 0
     if path.end < begin:
         span, state = (path.end, begin), path.state(path.end)
-        more = follow(problem, span, state, begin - path.end, _released, settings, largest, before.path)
+        more = yield from follow(problem, span, state, begin - path.end, _released, settings, largest, before.path)
         path, steps = path.joined(more.path), more.steps
-    state, guess = path.state(begin), Guess.of(problem, before.end - begin**2, over, before.steep, settings)
-    last = shut(problem, state, guess, settings, CLOSED, settings.rtol * largest)
+    state, guess = path.state(begin), Guess.of(before.end - begin**2, over, before.steep, settings)
+    last = yield from shut(problem, state, guess, settings, CLOSED, settings.rtol * largest)
     if last is None or not last.fits:
         return None
     return _closing(_before(path, begin), begin, last, steps)
@@ -102,9 +105,8 @@ def _guess(
 ) -> Guess:
     """Of the last piece from a place on: as it was hoped for earlier, or until a zero of the force, or by the state."""
     if zero is None and hoped and hoped.last and hoped.end > begin**2:
-        return Guess.of(problem, hoped.end - begin**2, hoped.last, hoped.steep, settings)
-    duration = _until_flat(problem, state) if zero is None else zero**2 - begin**2
-    return Guess(duration, np.full(settings.points, problem.gravity - state[FORCE]))
+        return Guess.of(hoped.end - begin**2, hoped.last, hoped.steep, settings)
+    return Guess(_until_flat(problem, state) if zero is None else zero**2 - begin**2)
 
 
 def _closing(path: Path | None, begin: float, last: Shut, steps: int) -> Closing:
@@ -130,23 +132,26 @@ def _until_flat(problem: Hereditary, state: Array) -> float:
 
 
 class Guess(NamedTuple):
-    """A duration, the accelerations at the nodes, and how steeply F falls with the load y, 0 where not known."""
+    """A duration, how steeply F falls with the load y, 0 where not known, and what path has about such a force, where.
+
+    Without a path the force is taken as it is now.
+    """
 
     duration: float
-    accelerations: Array
     steep: float = 0.0
+    over: Path | None = None
+    places: Array | None = None
 
     @classmethod
-    def of(cls, problem: Hereditary, duration: float, over: Path, steep: float, settings: Settings) -> Guess:
+    def of(cls, duration: float, over: Path, steep: float, settings: Settings) -> Guess:
         """From a piece over q that was found, and ends as this one of another duration."""
-        places = -(duration**0.5) * (1.0 - settings.table.points)
-        return cls(duration, problem.gravity - over.value(FORCE, places), steep)
+        return cls(duration, steep, over, -(duration**0.5) * (1.0 - settings.table.points))
 
     @classmethod
-    def within(cls, problem: Hereditary, duration: float, over: Path, steep: float, settings: Settings) -> Guess:
+    def within(cls, duration: float, over: Path, steep: float, settings: Settings) -> Guess:
         """From a piece over q of the same motion, and begun at the same time, but followed for another duration."""
         left = float(over.breaks[0]) ** 2 - duration + duration * (1.0 - settings.table.points) ** 2
-        return cls(duration, problem.gravity - over.value(FORCE, -np.sqrt(np.maximum(left, 0.0))), steep)
+        return cls(duration, steep, over, -np.sqrt(np.maximum(left, 0.0)))
 
 
 class Shut(NamedTuple):
@@ -161,7 +166,7 @@ class Shut(NamedTuple):
 
 def shut(
     problem: Hereditary, state: Array, start: Guess, settings: Settings, close: float, allowed: float
-) -> Shut | None:
+) -> Followed[Shut | None]:
     """The piece from a state that ends with F = 0, its duration found to the relative change `close`.
 
     That ends where the force of a first, longer one falls to zero; from there on, or where it does not, by secants.
@@ -171,12 +176,12 @@ def shut(
     load, slope = (float(value[0]) for value in problem.loads(state[:1]))
     if not load:
         return None
-    (duration, a, steep), steps, missed = start, 0, math.inf
+    duration, steps, missed = start.duration, 0, math.inf
     power, unit = _power(float(state[DEPTH]), load, slope)
-    steep, before = steep or unit * _mean_modulus(problem, duration), None
+    guess, steep, before = start, start.steep or unit * _mean_modulus(problem, duration), None
     for _ in range(TRIES):
         try:
-            piece = PieceMotion.to_end(problem, settings.table, duration).piece(state, a)
+            piece = yield PieceAsked(problem, settings.table, to_end, 0.0, duration, state, guess.over, guess.places)
         except (BadInput, NotReached):  # depths beyond the load curve, which the motion may never see
             return None
         if piece is None:
@@ -194,7 +199,8 @@ def shut(
         if abs(change) <= close * duration or rounded or not fits:
             return Shut(path, duration if fits else longer * duration, steep, steps, fits)
         before, missed = now, abs(change) if before else math.inf
-        duration, a, _ = Guess.within(problem, longer * duration, path, steep, settings)
+        guess = Guess.within(longer * duration, path, steep, settings)
+        duration = guess.duration
     return None
 
 

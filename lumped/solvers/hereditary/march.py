@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from lumped.errors import NotReached, TooManySteps
 from lumped.numbers import Array
 from lumped.progress import step_done
 from lumped.solvers.hereditary.path import Path
+from lumped.solvers.hereditary.pieces import Followed, HereditaryPiece
 from lumped.solvers.radau import Nodes, chebyshev_through_zero, radau
 
 POINTS = 16  # default: nodes of a piece
@@ -35,13 +35,6 @@ class Settings:
         return radau(self.points)
 
 
-class HereditaryPiece(NamedTuple):
-    """A solved piece: fields at its first place and its nodes, shape (fields, N+1); Newton steps it took."""
-
-    values: Array
-    steps: int
-
-
 @dataclass(frozen=True)
 class HereditaryMarch:
     """A path, its Newton steps and largest force; whether its last piece passed the event, or it got stuck."""
@@ -62,7 +55,7 @@ class Stretch:
     event that ends the march.
     """
 
-    attempt: Callable[[float, float, Array], HereditaryPiece | None]
+    attempt: Callable[[float, float, Array], Followed[HereditaryPiece | None]]
     force: int
     over: Callable[[Array], bool]
     time: int | None = None
@@ -75,7 +68,7 @@ class Stretch:
         settings: Settings,
         largest: float = 0.0,
         before: Path | None = None,
-    ) -> HereditaryMarch:
+    ) -> Followed[HereditaryMarch]:
         """From the first place of the span until the event, or to its end. Raises TooManySteps.
 
         `first` is the length to begin with, `largest` the largest force so far. The breaks of a path that was
@@ -89,7 +82,7 @@ class Stretch:
             step_done()
             place = breaks[-1]
             length = min(length, span[1] - place)
-            piece = self.attempt(place, length, state)
+            piece = yield from self.attempt(place, length, state)
             factor = UNSOLVED
             if piece is not None:
                 steps += piece.steps

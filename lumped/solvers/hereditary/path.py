@@ -11,6 +11,7 @@ from typing import Protocol
 
 import numpy as np
 from numpy.polynomial import chebyshev as polynomial
+from numpy.typing import NDArray
 
 from lumped.numbers import Array, falling_zero
 from lumped.solvers.radau import chebyshev_through_zero
@@ -18,8 +19,8 @@ from lumped.solvers.radau import chebyshev_through_zero
 Curve = Callable[[float], float]
 # Shares of a piece that lie densely, and those between which a fall is sought.
 DENSE, CLOSE = np.linspace(0.0, 1.0, 25), np.linspace(0.0, 1.0, 65)
-# So many places are few.
-FEW = 100
+# Work: so many places, and pieces, are few.
+FEW, FEW_PIECES = 100, 8
 # Work: steps that place a time within its interval; rounding: halvings towards both ends in the table of times.
 NEWTON_STEPS, ENDS = 4, 34
 
@@ -56,8 +57,7 @@ class Path:
 
     def at(self, places: Array) -> Array:
         """All fields at places (n,), shape (fields, n)."""
-        basis, piece = self._basis(places)
-        return np.asarray((self.coefficients[piece] @ basis.T[..., None])[..., 0].T)
+        return _sums(self.coefficients.swapaxes(0, 1), *self._basis(places))
 
     def state(self, place: float) -> Array:
         """All fields at one place, shape (fields,)."""
@@ -68,19 +68,16 @@ class Path:
 
     def value(self, index: int, places: Array) -> Array:
         """One field at places of any shape."""
-        basis, piece = self._basis(places)
-        return np.asarray((self.coefficients[:, index].T[:, piece] * basis).sum(axis=0))
+        return _sums(self.coefficients[:, index], *self._basis(places))
 
     def field(self, index: int, places: Array) -> tuple[Array, Array]:
         """One field and its derivative at places (n,)."""
-        basis, piece = self._basis(places)
-        own, rise = self.coefficients[:, index].T, self._rises[index]
-        return (own[:, piece] * basis).sum(axis=0), (rise[:, piece] * basis).sum(axis=0)
+        found = _sums(np.array([self.coefficients[:, index], self._rises[index]]), *self._basis(places))
+        return found[0], found[1]
 
-    def curve(self, index: int, near: float) -> tuple[Curve, Curve]:
-        """One field and its derivative as functions of a place in the piece around `near`."""
-        piece = self._piece(near)
-        low, high = (float(place) for place in self.breaks[piece : piece + 2])
+    def curve(self, index: int, piece: int) -> tuple[Curve, Curve]:
+        """One field and its derivative as functions of a place in one piece."""
+        low, high = self.breaks[piece : piece + 2].tolist()
         own = self.coefficients[piece, index]
         rise = slopes(own.size) @ own * (2.0 / (high - low))
 
@@ -91,9 +88,9 @@ class Path:
 
     @cached_property
     def _rises(self) -> Array:
-        """The coefficients of all derivatives, (fields, N+1, m)."""
-        count = self.coefficients.shape[2]
-        return np.asarray(slopes(count) @ self.coefficients.transpose(1, 2, 0) * (2.0 / np.diff(self.breaks)))
+        """The coefficients of all derivatives, (fields, m, N+1)."""
+        series = self.coefficients.swapaxes(0, 1) @ slopes(self.coefficients.shape[2]).T
+        return np.asarray(series * (2.0 / np.diff(self.breaks))[:, None])
 
     @cached_property
     def places(self) -> Array:
@@ -113,18 +110,19 @@ class Path:
         before = self.coefficients[:last, index] @ series[:, :-1]
         return np.append(before.ravel(), self.coefficients[last, index] @ final)
 
-    def highest(self, index: int) -> tuple[float, float]:
-        """Place and height of the highest point of a field."""
-        values, places = self.samples(index), self.places.tolist()
-        i = int(np.argmax(values))
+    def highest(self, index: int, samples: Array) -> tuple[float, float]:
+        """Place and height of the highest point of a field, whose :meth:`samples` are known."""
+        i = int(np.argmax(samples))
+        near, known = self.places[max(i - 1, 0) : i + 2].tolist(), -1
         # Each interval between samples lies in one piece, and the top in the one into which the curve rises.
-        for low, high in pairwise(places[max(i - 1, 0) : i + 2]):
-            value, slope = self.curve(index, 0.5 * (low + high))
+        for low, high in pairwise(near):
+            if (piece := int(self._piece(0.5 * (low + high)))) != known:
+                known, (value, slope) = piece, self.curve(index, piece)
             ends = slope(low), slope(high)
             if ends[0] > 0.0 > ends[1]:
                 top = falling_zero(slope, low, high, ends)
                 return top, value(top)
-        return places[i], float(values[i])
+        return float(self.places[i]), float(samples[i])
 
     def fall(self, index: int, level: float = 0.0) -> float | None:
         """Where a field first falls to a level in the last piece, after its start; None where it does not."""
@@ -133,20 +131,42 @@ class Path:
         below = np.flatnonzero(own @ _at_close(own.size)[:, 1:] <= level)
         if not below.size:
             return None
-        value, _ = self.curve(index, 0.5 * (low + high))
+        value, _ = self.curve(index, len(self.coefficients) - 1)
         before, after = (low + (high - low) * CLOSE[below[0] : below[0] + 2]).tolist()
         return falling_zero(lambda place: value(place) - level, before, after)
 
-    def _piece(self, places: Array | float) -> Array:
+    def _piece(self, places: Array | float) -> NDArray[np.intp]:
         """The index of the piece of each place."""
         return np.asarray(self.breaks[1:-1].searchsorted(places, side="right"))
 
-    def _basis(self, places: Array) -> tuple[Array, Array]:
+    def _basis(self, places: Array) -> tuple[Array, NDArray[np.intp]]:
         """Chebyshev polynomials at places of any shape, (N+1, ...), and the piece of each."""
         piece = self._piece(places)
         low, high = self.breaks[piece], self.breaks[piece + 1]
         x = (2.0 * places - low - high) / (high - low)
         return chebyshev(np.minimum(np.maximum(x, -1.0), 1.0), self.coefficients.shape[2]), piece
+
+
+def _sums(series: Array, basis: Array, piece: NDArray[np.intp]) -> Array:
+    """Polynomials (..., m, N+1), at each place the one of its piece, where the basis was made, (N+1, ...)."""
+    if series.shape[-2] <= FEW_PIECES:  # all of them at every place are sooner told than coefficients of every place
+        every = series @ basis.reshape(len(basis), -1)
+        found = every[..., piece.ravel(), np.arange(piece.size)]
+    else:
+        found = (series[..., piece.ravel(), :] * basis.reshape(len(basis), -1).T).sum(axis=-1)
+    return np.asarray(found.reshape(*series.shape[:-2], *piece.shape))
+
+
+def values_of(index: int, paths: Sequence[Path], places: Array) -> Array:
+    """One field of paths with as many coefficients, each at places of its own (B, n), and the same in any company."""
+    piece = np.array([path._piece(own) for path, own in zip(paths, places, strict=True)])
+    begun = np.cumsum([0, *(path.breaks.size for path in paths[:-1])])[:, None]  # of each path, among all breaks
+    breaks = np.concatenate([path.breaks for path in paths])
+    low, high = breaks[begun + piece], breaks[begun + piece + 1]
+    x = np.minimum(np.maximum((2.0 * places - low - high) / (high - low), -1.0), 1.0)
+    series = np.concatenate([path.coefficients[:, index] for path in paths])
+    own = series[begun + piece - np.arange(len(paths))[:, None]]  # a path has a piece less than breaks
+    return np.asarray((own * np.cos(np.arccos(x)[..., None] * np.arange(own.shape[-1]))).sum(axis=-1))
 
 
 def chebyshev(x: Array, count: int) -> Array:
@@ -291,7 +311,11 @@ class HereditaryPhase:
     def _seen(self) -> Path:
         return self.path.of_fields([self.depth, self.depth + 1, self.depth + 3, self.edge])
 
-    def highest(self, field: int) -> tuple[float, float]:
-        """When a field is highest, 0 the depth and 3 the force, and how high."""
-        place, height = self.path.highest(self.depth + field)
+    def samples(self, field: int) -> Array:
+        """A field, 0 the depth and 3 the force, at `times`, shape (n,)."""
+        return self.path.samples(self.depth + field)
+
+    def highest(self, field: int, samples: Array) -> tuple[float, float]:
+        """When a field of these samples is highest, and how high."""
+        place, height = self.path.highest(self.depth + field, samples)
         return float(self.clock.time(np.array([place]))[0]), height

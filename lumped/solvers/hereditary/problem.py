@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lumped.load_curves import LoadCurve
 from lumped.materials import Relaxation
-from lumped.numbers import Array
+from lumped.numbers import Array, Real
 
 # A relative step for a difference, and a depth too small to matter.
 NEARBY, TINY = 1e-6, 1e-150
+NUMBERS = 5  # of a problem beside those of its terms
 # A share of the shortest contact time, to see how a load starts; a power is whole that is as near to a whole number.
 SHALLOW, WHOLE = 1e-9, 1e-3
 
@@ -106,20 +109,19 @@ class Hereditary:
         return np.array([0.0, *self.rates])
 
     @cached_property
-    def _units(self) -> tuple[float, float]:
+    def units(self) -> tuple[float, float]:
         """Of depth, m, and of load, m2."""
         return self.scales.depth, self.scales.load
 
+    @cached_property
+    def row(self) -> Array:
+        """Its numbers: units, gravity, E_inf, viscosity; of every term modulus and rate, shape (5 + 2 K,)."""
+        terms = np.stack([self.stiffnesses, self.rates], axis=1).ravel()
+        return np.array([*self.units, self.gravity, self.modulus.equilibrium, self.modulus.viscosity, *terms])
+
     def loads(self, depth: Array) -> tuple[Array, Array]:
         """y and dy/d depth at a depth; y is odd: below zero it pulls, so that a force ends by crossing zero."""
-        deep, load = self._units
-        force, slope = self.curve.force_and_slope(np.abs(depth) * deep)
-        return np.copysign(force / load, depth), np.asarray(slope * (deep / load))
-
-    def bend(self, depth: Array, slope: Array) -> Array:
-        """d2y/d depth2 by a difference, good for Newton's steps."""
-        step = NEARBY * depth + TINY
-        return np.asarray((self.loads(depth + step)[1] - slope) / step)
+        return _loads(self.curve, depth, *self.units)
 
     def contact_radius(self, depth: Array) -> Array:
         """Contact radius of the elastic load curve, m."""
@@ -149,3 +151,83 @@ class Hereditary:
         states[3] = self.modulus.glassy * load + self.modulus.viscosity * slope
         states[4:] = load
         return states
+
+
+@dataclass(frozen=True, eq=False)
+class Problems:
+    """B problems of as many Prony terms K, all with viscosity, and weight, or none; their numbers, `rows` (B, 5 + 2 K).
+
+    `which` (B,) says which of the `curves` each has: those in closed form are shared.
+    """
+
+    curves: Sequence[LoadCurve]
+    which: NDArray[np.intp]
+    rows: Array
+
+    @classmethod
+    def of(cls, problems: Sequence[Hereditary]) -> Problems:
+        """Theirs."""
+        curves, first = [one.curve for one in problems], dict[object, int]()
+        which = np.array([first.setdefault(curve if curve.closed else i, i) for i, curve in enumerate(curves)])
+        return cls(curves, which, np.array([one.row for one in problems]))
+
+    def chosen(self, some: NDArray[np.bool_]) -> Problems:
+        """Some of them."""
+        return Problems(self.curves, self.which[some], self.rows[some])
+
+    @property
+    def gravity(self) -> Array:
+        """(B, 1)."""
+        return self.rows[:, 2:3]
+
+    @property
+    def equilibrium(self) -> Array:
+        """E_inf, (B, 1)."""
+        return self.rows[:, 3:4]
+
+    @property
+    def viscosity(self) -> Array:
+        """(B, 1)."""
+        return self.rows[:, 4:5]
+
+    @property
+    def viscous(self) -> bool:
+        """Whether they have a viscosity."""
+        return bool(self.rows[0, 4] > 0.0)
+
+    @property
+    def weighty(self) -> bool:
+        """Whether there is gravity."""
+        return bool(self.rows[0, 2] != 0.0)
+
+    @property
+    def stiffnesses(self) -> Array:
+        """Moduli E_k, (B, K)."""
+        return self.rows[:, NUMBERS::2]
+
+    @property
+    def rates(self) -> Array:
+        """1/tau_k, (B, K)."""
+        return self.rows[:, NUMBERS + 1 :: 2]
+
+    def loads(self, depth: Array) -> tuple[Array, Array]:
+        """As :meth:`Hereditary.loads`, of depths (B, n)."""
+        deep, unit = self.rows[:, :1], self.rows[:, 1:2]
+        if not (self.which - self.which[0]).any():
+            return _loads(self.curves[self.which[0]], depth, deep, unit)
+        load, slope = np.empty((2, *depth.shape))
+        for i in np.unique(self.which).tolist():
+            own = self.which == i
+            load[own], slope[own] = _loads(self.curves[i], depth[own], deep[own], unit[own])
+        return load, slope
+
+    def bend(self, depth: Array, slope: Array) -> Array:
+        """d2y/d depth2 by a difference, good for Newton's steps, of depths (B, n)."""
+        step = NEARBY * depth + TINY
+        return np.asarray((self.loads(depth + step)[1] - slope) / step)
+
+
+def _loads(curve: LoadCurve, depth: Array, deep: Real, unit: Real) -> tuple[Array, Array]:
+    """y and dy/d depth at depths in units `deep`, m; of a load in units of `unit`, m2."""
+    force, slope = curve.force_and_slope(np.abs(depth) * deep)
+    return np.copysign(force / unit, depth), np.asarray(slope * (deep / unit))

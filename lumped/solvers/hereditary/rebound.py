@@ -29,10 +29,11 @@ import numpy as np
 from lumped.errors import NotReached
 from lumped.numbers import Array, falling_zero, gauss
 from lumped.result.history import End
-from lumped.solvers.hereditary import approach as forth
+from lumped.solvers.hereditary import pieces as forth
 from lumped.solvers.hereditary.approach import Approach
-from lumped.solvers.hereditary.march import HereditaryPiece, Settings, Stretch
+from lumped.solvers.hereditary.march import Settings, Stretch
 from lumped.solvers.hereditary.path import Path
+from lumped.solvers.hereditary.pieces import Followed, HereditaryPiece
 from lumped.solvers.hereditary.problem import Hereditary
 from lumped.solvers.radau import Nodes
 
@@ -80,8 +81,9 @@ class ReboundPieces:
     table: Nodes
     before: Path | None
 
-    def piece(self, place: float, length: float, state: Array) -> HereditaryPiece | None:
-        """The piece of a length at a place, from the state there; None where Newton's steps fail."""
+    def piece(self, place: float, length: float, state: Array) -> Followed[HereditaryPiece | None]:
+        """The piece of a length at a place, from the state there; None where Newton's steps fail. It asks for none."""
+        yield from ()
         over, weights = place + length * self.table.points, length * self.table.once
         then = self._then(place, over, weights, state)
         tried = (self._solved(weights, state, then, pace) for pace in self._paces(over))
@@ -170,7 +172,7 @@ class Trial:
 
 def rebound(
     problem: Hereditary, inward: Approach, end_time: float, settings: Settings, before: Rebound | None = None
-) -> Rebound:
+) -> Followed[Rebound]:
     """Follow the rebound until contact closes, the striker approaches again, or `end_time`. Raises NotReached.
 
     `before` is the same found with fewer nodes: its pieces are kept, and it is where Newton starts.
@@ -186,11 +188,11 @@ def rebound(
         return bool(values[TIME, -1] >= end_time)
 
     stretch = Stretch(retreat.piece, FORCE, over, TIME)
-    found = stretch.march((-end, 0.0), start, FIRST * end, settings, before=known)
+    found = yield from stretch.march((-end, 0.0), start, FIRST * end, settings, before=known)
     path = found.path
     if found.over:
         low, high = (float(place) for place in path.breaks[-2:])
-        time, _ = path.curve(TIME, 0.5 * (low + high))
+        time, _ = path.curve(TIME, len(path.coefficients) - 1)
         path = path.until(falling_zero(lambda place: end_time - time(place), low, high))
         return Rebound(path, End.TIME, found.steps)
     if found.stuck:
