@@ -7,8 +7,8 @@ more or less, a comparison turned round, a condition held, largest for smallest,
 out, an answer a tenth, a bar a fifteenth. Numbers below ``FLOOR``, or above its inverse, stay: they guard a division.
 Each mutant is written to a copy of the checkout, never to the checkout, and meets the tests that reach the mutated
 line, those first that killed others of its file, then the fastest, until one fails, up to ``--budget`` seconds of
-processor time. Prints what every mutant met, the share killed, and the survivors; one that does no harm stands with its
-reason in ``HARMLESS`` and is not drawn.
+processor time. Prints what every mutant met, the survivors, those that do no harm with their reason (``HARMLESS``),
+and the share killed, of all and of those that could do harm: survivors that stand in ``HARMLESS`` left out.
 
 Which test reaches what is found by running every test file once in such a copy, where what fails is not asked. It is
 kept in the folder ``--work``; so are the answers, so that a run that was broken off goes on where it stood. A test file
@@ -362,10 +362,12 @@ class Mutant:
         return f"{self.file}:{self.line} {self.scope}: {self.change}"
 
     @property
-    def harmless(self) -> bool:
-        """Whether it stands among those that are."""
-        known = (begins for file, scope, begins in HARMLESS if scope == self.scope and fnmatch(self.file, file))
-        return any(self.change.startswith(begins) for begins in known)
+    def reason(self) -> str:
+        """Why it does no harm, nothing where it may."""
+        for (file, scope, begins), reason in HARMLESS.items():
+            if scope == self.scope and fnmatch(self.file, file) and self.change.startswith(begins):
+                return reason
+        return ""
 
     @property
     def rows(self) -> range | None:
@@ -566,7 +568,7 @@ def _put(parent: ast.AST, field: str, index: int | None, child: ast.AST) -> None
 def drawn(files: list[str], seed: int, count: int, changes: str = "*") -> list[Mutant]:
     """So many mutants, every file alike, but those that errors and their bars come from four times as often."""
     rng = random.Random(seed)
-    left = {file: [one for one in all_of(file) if fnmatch(one.change, changes) and not one.harmless] for file in files}
+    left = {file: [one for one in all_of(file) if fnmatch(one.change, changes)] for file in files}
     often, chosen = files + 3 * [file for file in files if any(fnmatch(file, one) for one in ERRORS)], list[Mutant]()
     while len(chosen) < count and any(left.values()):
         for file in rng.sample(often, len(often)):
@@ -879,15 +881,17 @@ def _run(tests: list[str], root: Path, said: Path, most: int) -> None:
     os._exit(code)
 
 
-def answered(mutants: list[Mutant], tests: list[Asked], budget: float, work: Path, roots: list[Path]) -> dict[str, str]:
-    """What every mutant meets, by name; answers at hand are kept but those of survivors, whom new tests may kill."""
+def answered(
+    mutants: list[Mutant], tests: list[Asked], budget: float, work: Path, roots: list[Path]
+) -> dict[Mutant, str]:
+    """What every mutant meets; answers at hand are kept but those of survivors, whom new tests may kill."""
     kept = work / "answers.json"
     known: dict[str, str] = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
     free: SimpleQueue[Path] = SimpleQueue()
     for root in roots:
         free.put(root)
 
-    def one(mutant: Mutant) -> tuple[str, str]:
+    def one(mutant: Mutant) -> tuple[Mutant, str]:
         key = f"{mutant.name} {hashlib.sha256(mutant.text.encode()).hexdigest()[:12]}"
         if "killed" not in known.get(key, ""):
             root = free.get()
@@ -899,7 +903,7 @@ def answered(mutants: list[Mutant], tests: list[Asked], budget: float, work: Pat
             kept.write_text(json.dumps(known, indent=1), encoding="utf-8")
             sys.stdout.write(f"{mutant.name}\n    {known[key]}\n")
             sys.stdout.flush()
-        return mutant.name, known[key]
+        return mutant, known[key]
 
     with ThreadPoolExecutor(len(roots)) as pool:
         found = dict(pool.map(one, mutants))
@@ -931,16 +935,18 @@ def _copy(source: Path, target: Path) -> None:
         shutil.copyfile(source, target)
 
 
-def told(answers: dict[str, str]) -> Iterable[str]:
-    """The share killed, by file and of all, and who survived."""
+def told(answers: dict[Mutant, str]) -> Iterable[str]:
+    """The share killed, by file, of all and of those that could do harm, and who survived."""
     files: dict[str, list[bool]] = defaultdict(list)
-    for name, answer in answers.items():
-        files[name.partition(":")[0]].append("killed" in answer)
+    for mutant, answer in answers.items():
+        files[mutant.file].append("killed" in answer)
     yield from (f"{sum(killed):4d} of {len(killed):3d}  {file}" for file, killed in sorted(files.items()))
-    yield from (f"{answer}: {name}" for name, answer in answers.items() if "killed" not in answer)
-    yield from (f"not drawn: {file} {scope} {begins}: {reason}" for (file, scope, begins), reason in HARMLESS.items())
-    killed = sum("killed" in answer for answer in answers.values())
-    yield f"{killed} of {len(answers)} killed: {killed / max(len(answers), 1):.0%}"
+    left = [one for one, answer in answers.items() if "killed" not in answer]
+    yield from (f"{answers[one]}: {one.name}" for one in left if not one.reason)
+    yield from (f"no harm: {one.name}: {one.reason}" for one in left if one.reason)
+    killed, harmless = len(answers) - len(left), sum(bool(one.reason) for one in left)
+    for drawn_of, others in ((len(answers), "all"), (len(answers) - harmless, "those that could do harm")):
+        yield f"{killed} of {drawn_of} killed, {others}: {killed / max(drawn_of, 1):.0%}"
 
 
 def main() -> None:
