@@ -15,10 +15,11 @@ from fe_contact import reference, relaxing_impact
 from fe_contact.budget import several, solved
 from fe_contact.budget.budget import CAUSES, TotalWork, shares_of
 from fe_contact.budget.certify import _judging, other_mesh
-from fe_contact.budget.refine import Growth
+from fe_contact.budget.refine import AIM, Growth, factors
 from fe_contact.budget.runs import AnyRuns, Runs
 from fe_contact.budget.several import Row
 from fe_contact.march.impacts import Followed
+from fe_contact.plastic.indent import YieldingWay
 from fe_contact.settings import WaveNumerics
 from fe_contact.steppers.steps import Work
 from fe_contact.waves import certify
@@ -41,6 +42,59 @@ def test_what_a_step_is_worth_is_what_it_takes_from_the_bar(order: float, step: 
     """A share of an error that falls as the setting to minus ``order``, over what the march then costs more."""
     left = 0.3 * step**-order
     assert Growth(order, step, most=4.0, work=0.5).worth(0.3) == pytest.approx((0.3 - left) / (0.5 * math.log(step)))
+
+
+GROWTHS = {
+    "mesh": Growth(order=2.0, step=1.25, most=8.0, work=2.0),
+    "penalty": Growth(order=1.0, step=2.0, most=8.0, work=0.5),
+    "time_step": Growth(order=1.0, step=1.5, most=8.0, work=1.0),
+}
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_settings_are_raised_until_bars_are_predicted_to_meet_the_tolerance_and_no_further(seed: int) -> None:
+    """Of two quantities: some last step is needed, and no cause alone would do it for less work."""
+    rng = np.random.default_rng(seed)
+    shares = {cause: rng.uniform(0.0, 2.0, 2) for cause in GROWTHS}
+
+    def bar(chosen: dict[str, float]) -> float:
+        left = [share / chosen[cause] ** GROWTHS[cause].order for cause, share in shares.items()]
+        return float(np.max(sum(left)))
+
+    chosen = factors(shares, GROWTHS, dict.fromkeys(GROWTHS, 1e3))
+    assert bar(chosen) <= AIM
+    raised = [cause for cause, factor in chosen.items() if factor > 1.0]
+    assert any(bar(chosen | {cause: chosen[cause] / GROWTHS[cause].step}) > AIM for cause in raised)
+    cost = math.prod(chosen[cause] ** GROWTHS[cause].work for cause in GROWTHS)
+    for cause, growth in GROWTHS.items():
+        alone = dict.fromkeys(GROWTHS, 1.0)
+        while bar(alone) > AIM and alone[cause] < 1e3:
+            alone[cause] *= growth.step
+        assert bar(alone) > AIM or cost <= 1.01 * growth.step**growth.work * alone[cause] ** growth.work
+
+
+def test_a_setting_is_raised_within_its_room_and_one_that_errs_by_nothing_stays() -> None:
+    shares = {"mesh": np.array([4.0]), "penalty": np.array([0.0]), "time_step": np.array([4.0])}
+    room = {"mesh": 1.25**2, "penalty": 8.0, "time_step": 1.0}
+    assert factors(shares, GROWTHS, room) == {"mesh": 1.25**2, "penalty": 1.0, "time_step": 1.0}
+    calm = {cause: 0.2 * share for cause, share in shares.items() if cause != "mesh"}
+    assert factors(calm, GROWTHS, room) == {"penalty": 1.0, "time_step": 1.0}, "bars meet the tolerance"
+
+
+@pytest.mark.parametrize("missed", [0.5, 0.99, 1.01, 2.0])
+def test_what_yields_is_pressed_again_with_finer_settings_where_bars_miss_the_tolerance(
+    missed: float, numerics: WaveNumerics
+) -> None:
+    """By the sum of all causes at the worst depth."""
+    nothing: Any = None
+    share = missed * numerics.tolerance
+    found: Any = SimpleNamespace(
+        budget={"mesh": share * np.array([0.6, 0.1]), "time_step": share * np.array([0.4, 0.8])}, numerics=numerics
+    )
+    way = YieldingWay(nothing, nothing, frozenset(), nothing)
+    assert (way.finer(found).settings is None) == (missed < 1.0)
+    kept = YieldingWay(nothing, nothing, frozenset({"elements_per_contact", "steps"}), nothing)
+    assert kept.finer(found).settings is None
 
 
 def waves(numerics: WaveNumerics, pinned: tuple[str, ...] = ()) -> Waves:

@@ -434,6 +434,91 @@ def test_a_speed_that_errs_before_the_end_makes_the_bar_of_what_the_striker_take
     assert trusted["out"] == pytest.approx(2.0 * change.energies["out"], rel=1e-2)
 
 
+def in_units(curve: Curve, time: float, length: float, force: float) -> Curve:
+    """The same contact with so many of new units to one of the old."""
+    strike, relaxation = curve.strike, curve.strike.relaxation
+    return replace(
+        curve,
+        strike=replace(
+            strike,
+            mass=strike.mass * force * time**2 / length,
+            velocity=strike.velocity * length / time,
+            relaxation=replace(relaxation, times=tuple(time * one for one in relaxation.times)),
+        ),
+        duration=time * curve.duration,
+        mean_force=force * curve.mean_force,
+        depth=length * curve.depth,
+        radius_squared=length**2 * curve.radius_squared,
+        end_spread=time * curve.end_spread,
+        energy={name: force * length * value for name, value in curve.energy.items()},
+    )
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_errors_are_the_same_in_all_units(seed: int) -> None:
+    """Of contacts that end apart, elastic or not, that part or are cut off, on a mesh that stays or follows."""
+    rng, relaxation = np.random.default_rng(seed), Relaxation(1.0, (1.0,), (0.3,)) if seed & 1 else Relaxation(1.0)
+    time, length, force = units = 10 ** rng.uniform(-4.0, 4.0, 3)
+    runs = [
+        replace(
+            made_up(STEPS // part, wave(1e-3 * part**2, 0.5, phase), late=0.02 * part),
+            strike=replace(STRIKE, relaxation=relaxation),
+            separated=not seed & 2,
+            end_spread=1e-3 * part,
+            energy={name: float(value) for name, value in zip(TRUTH.energy, rng.uniform(size=7), strict=True)},
+        )
+        for part, phase in ((1, 0.0), (2, 1.0), (4, 2.0))
+    ]
+    told = {"weights": {"restitution": 3.0, "peak_force": 2.0}, "creeps": bool(seed & 4)}
+
+    def change(runs: list[Curve], unresolved: float | None) -> Variation:
+        finer, coarser = extrapolated(runs[0], runs[1], 2), extrapolated(runs[1], runs[2], 2)
+        return Variation(finer, coarser, 0.7, unresolved=unresolved, **told)
+
+    scales = {"peak_force": force, "impulse": force * time, "peak_depth": length, "peak_time": time, "duration": time}
+    places = np.linspace(0.0, 1.05, 200)
+    for unresolved in (None, 0.1):
+        one = change(runs, unresolved)
+        other = change([in_units(run, *units) for run in runs], unresolved and unresolved * time)
+        assert other.errors == pytest.approx({name: scales.get(name, 1.0) * e for name, e in one.errors.items()})
+        assert other.energies == pytest.approx({name: force * length * e for name, e in one.energies.items()})
+        assert other.force(time * places) == pytest.approx(force * one.force(places))
+
+
+def test_no_order_is_trusted_up_to_the_second_step_of_the_coarsest_run(settings: Numerics) -> None:
+    """Whose steps end at the squares of equal shares of the root of its duration; there the whole change counts."""
+    runs = {STEPS // part: made_up(STEPS // part, lambda t, c=part: 1e-3 * c**2 * t, 0.01 * part) for part in (1, 2, 4)}
+    change, *_ = _time_steps(lambda one: runs[one.steps], settings, False).changes
+    assert change is not None
+    times = 1.04 * (8 / STEPS) ** 2 * np.array([0.999, 1.001])
+    band, trusted = change.force(times), replace(change, unresolved=0.0).force(times)
+    assert change.factor < 1.0
+    assert band == pytest.approx([1.25 / change.factor, 1.0] * trusted)
+
+
+def test_a_force_that_changes_in_one_place_is_as_well_known_as_before_far_from_there() -> None:
+    other = made_up(STEPS, lambda share: 1e-3 * np.exp(-(((share - 0.5) / 0.02) ** 2)))
+    band = Variation(TRUTH, other, 1.0).force(np.array([0.1, 0.46, 0.5, 0.54, 0.9]))
+    assert band[1:-1].min() > 0.5 * band.max()
+    assert band[[0, -1]].max() < 1e-3 * band.max()
+
+
+@pytest.mark.parametrize("trusted", [0.5, 5.0])
+def test_the_band_of_a_force_counts_the_touch_and_the_steps_without_an_order_more(trusted: float) -> None:
+    """And a last step more than others only where it is cut off."""
+    other = made_up(STEPS // 4, lambda share: 1e-3 * (1.0 + share), 0.5)
+    step, seen = (STEPS**-2, 1.5 * (4 / STEPS) ** 2)  # the first of either
+    times = np.array([0.9 * step, 1.1 * step, 0.99 * seen, 1.01 * seen, 0.5, 1.0])
+    least = np.array([3.0, 1.25, 1.25, 0.0, 0.0, 0.0])
+    changes = Variation(TRUTH, other, 10.0).force(times) / 10.0
+    weights = {"peak_force": 7.0}
+    band = Variation(TRUTH, other, trusted, weights).force(times)
+    assert band == pytest.approx(np.maximum(trusted, least) * changes)
+    cut = [replace(one, separated=False, duration=1.0) for one in (TRUTH, other)]
+    weighed, plain = (Variation(*cut, trusted, one).force(times) for one in (weights, {}))
+    assert weighed / plain == pytest.approx([1.0, 1.0, 1.0, 1.0, 1.0, 7.0])
+
+
 def test_the_steps_that_count_are_seconds_however_long_the_contact(settings: Numerics) -> None:
     """A branch as fast as a step is as fast as a step when both last a thousand times as long."""
     errors = []
