@@ -19,6 +19,7 @@ from fe_contact.budget.refine import AIM, Growth, factors
 from fe_contact.budget.runs import AnyRuns, Runs
 from fe_contact.budget.several import Row
 from fe_contact.march.impacts import Followed
+from fe_contact.plastic import course
 from fe_contact.plastic.indent import YieldingWay
 from fe_contact.settings import WaveNumerics
 from fe_contact.steppers.steps import Work
@@ -51,6 +52,16 @@ GROWTHS = {
 }
 
 
+@pytest.mark.parametrize("growths", [certify.GROWTH, course.GROWTH])
+def test_no_cause_alone_makes_a_round_more_than_four_times_as_dear(growths: dict[str, Growth]) -> None:
+    """Nor more than twice where its bar misses by little; and a step is one: it raises, and may be taken."""
+    assert set(growths) == set(CAUSES)
+    for growth in growths.values():
+        assert 1.0 < growth.step <= growth.most
+        assert growth.step**growth.work <= 2.0
+        assert growth.most**growth.work <= 4.0
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_settings_are_raised_until_bars_are_predicted_to_meet_the_tolerance_and_no_further(seed: int) -> None:
     """Of two quantities: some last step is needed, and no cause alone would do it for less work."""
@@ -78,6 +89,8 @@ def test_a_setting_is_raised_within_its_room_and_one_that_errs_by_nothing_stays(
     room = {"mesh": 1.25**2, "penalty": 8.0, "time_step": 1.0}
     assert factors(shares, GROWTHS, room) == {"mesh": 1.25**2, "penalty": 1.0, "time_step": 1.0}
     calm = {cause: 0.2 * share for cause, share in shares.items() if cause != "mesh"}
+    equal = {cause: np.array([0.5]) for cause in ("mesh", "penalty")}
+    assert factors(equal, GROWTHS, room) == {"mesh": 1.0, "penalty": 2.0}, "which is cheaper"
     assert factors(calm, GROWTHS, room) == {"penalty": 1.0, "time_step": 1.0}, "bars meet the tolerance"
 
 
