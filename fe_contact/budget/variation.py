@@ -307,10 +307,9 @@ def _jitter(curve: Curve) -> float:
 
 def _crossings(curve: Curve, corners: Array) -> Array:
     """Shares of the contact, ascending, at which the growing edge stands on corners, once no step passes several."""
-    top = int(curve.radius_squared.argmax()) + 1
-    squares = np.maximum.accumulate(curve.radius_squared[:top])
+    squares = np.maximum.accumulate(curve.radius_squared)
     inside = corners[(corners > 0.0) & (corners**2 < squares[-1])]
-    crossed, steps = np.interp(inside**2, squares, curve.radius_x[:top] ** 2), curve.x**2
+    crossed, steps = np.interp(inside**2, squares, curve.radius_x**2), curve.x**2
     short = np.flatnonzero(np.diff(crossed) < np.interp(crossed[1:], steps[1:], np.diff(steps)))
     return np.asarray(crossed[short[-1] + 1 if short.size else 0 :])
 

@@ -15,7 +15,7 @@ from fe_contact import reference, relaxing_impact
 from fe_contact.budget import several, solved
 from fe_contact.budget.budget import CAUSES, TotalWork, shares_of
 from fe_contact.budget.certify import _judging, other_mesh
-from fe_contact.budget.refine import AIM, Growth, factors
+from fe_contact.budget.refine import AIM, Growth, factors, missing
 from fe_contact.budget.runs import AnyRuns, Runs
 from fe_contact.budget.several import Row
 from fe_contact.march.impacts import Followed
@@ -92,6 +92,17 @@ def test_a_setting_is_raised_within_its_room_and_one_that_errs_by_nothing_stays(
     equal = {cause: np.array([0.5]) for cause in ("mesh", "penalty")}
     assert factors(equal, GROWTHS, room) == {"mesh": 1.0, "penalty": 2.0}, "which is cheaper"
     assert factors(calm, GROWTHS, room) == {"penalty": 1.0, "time_step": 1.0}, "bars meet the tolerance"
+
+
+def test_steps_are_raised_to_a_whole_number_and_all_else_as_far_as_predicted(numerics: WaveNumerics) -> None:
+    shares = {cause: np.array([2.0]) for cause in CAUSES}
+    finer = missing(shares, certify.GROWTH, numerics, ("far_radius",))
+    room = {cause: growth.most for cause, growth in certify.GROWTH.items()} | {"far_field": 1.0}
+    raised = factors(shares, certify.GROWTH, room)
+    assert raised["mesh"] > 1.0
+    assert finer.elements_per_contact == raised["mesh"] * numerics.elements_per_contact
+    assert (finer.steps, type(finer.steps)) == (raised["time_step"] * numerics.steps, int)
+    assert finer.far_radius == numerics.far_radius
 
 
 @pytest.mark.parametrize("missed", [0.5, 0.99, 1.01, 2.0])

@@ -14,7 +14,7 @@ from scipy.sparse import linalg
 import fe_contact
 import lumped
 from fe_contact import reference
-from fe_contact.budget.budget import CAUSES, SETTING
+from fe_contact.budget.budget import CAUSES, SETTING, shares_of
 from fe_contact.budget.certify import Certified, certify
 from fe_contact.budget.plan import plan
 from fe_contact.budget.refine import Finer, dominant, refine
@@ -28,7 +28,7 @@ from fe_contact.steppers.steps import Strike
 from fe_contact.targets import half_space
 from lumped import laws, load_curves
 from lumped.laws import mdr
-from lumped.result.result import RULED_RELATIVE
+from lumped.result.result import RULED_RELATIVE, meets
 
 corrected = ENFORCEMENTS.get("corrected")
 
@@ -148,6 +148,16 @@ def test_the_error_bars_cost_less_than_two_more_of_the_finest_march(scene_of: Sc
     work = certified(scene_of(MATERIALS["sls"]), steps=steps).work
     assert work.marches <= 7
     assert work.steps <= (1 + 1 / 2 + (work.marches - 2) / 4) * steps + 5 * work.marches
+
+
+@pytest.mark.parametrize(("name", "tolerance"), [("steel-ball", 1e-4), ("polymer-cone", 1e-4), ("polymer-layer", 1e-3)])
+def test_the_first_settings_meet_the_tolerance_and_hold_no_cause_far_below_it(name: str, tolerance: float) -> None:
+    """Each takes between a two-hundredth and all of it: none is far dearer than was asked for."""
+    scene = lumped.Scene.load(name)
+    found = certify(Strike.of(scene), scene.geometry, plan(scene, {"tolerance": tolerance}).numerics)
+    shares = {cause: float(shares_of(found, cause).max()) for cause in CAUSES}
+    assert all(0.005 < share < 1.0 for share in shares.values()), shares
+    assert all(meets(part, tolerance) for part in found.parts)
 
 
 @pytest.fixture

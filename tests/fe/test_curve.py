@@ -103,6 +103,11 @@ def test_an_edge_is_known_to_meet_every_corner_that_it_reaches(steps: int) -> No
     crossed = _crossings(curve, np.concatenate([[0.0], reached, [1.1]]))
     assert crossed == pytest.approx(np.arcsin(reached) / np.pi, abs=1.5 / steps)
     assert smooth.x[top - 1] ** 2 < crossed[-1] < smooth.x[top] ** 2
+    close = np.linspace(0.0, 0.99, 5 * steps // 8)
+    exact, few = np.arcsin(close) / np.pi, _crossings(curve, close)
+    passed = np.flatnonzero(np.diff(exact) < 2.0 * np.sqrt(exact[1:]) / steps)  # by a step that is as long as this
+    assert 0 < len(few) < len(close) - 10
+    assert few.size == pytest.approx(len(close) - 1 - passed[-1], abs=1)
 
 
 @pytest.mark.parametrize("steps", [40, 80, 256])

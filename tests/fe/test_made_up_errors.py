@@ -514,9 +514,10 @@ def test_the_band_of_a_force_counts_the_touch_and_the_steps_without_an_order_mor
     weights = {"peak_force": 7.0}
     band = Variation(TRUTH, other, trusted, weights).force(times)
     assert band == pytest.approx(np.maximum(trusted, least) * changes)
-    cut = [replace(one, separated=False, duration=1.0) for one in (TRUTH, other)]
-    weighed, plain = (Variation(*cut, trusted, one).force(times) for one in (weights, {}))
-    assert weighed / plain == pytest.approx([1.0, 1.0, 1.0, 1.0, 1.0, 7.0])
+    for separated in (True, False):
+        ended = [replace(one, separated=separated, duration=1.0) for one in (TRUTH, other)]
+        weighed, plain = (Variation(*ended, trusted, one).force(times) for one in (weights, {}))
+        assert weighed == pytest.approx([1.0, 1.0, 1.0, 1.0, 1.0, 1.0 if separated else 7.0] * plain)
 
 
 def test_the_steps_that_count_are_seconds_however_long_the_contact(settings: Numerics) -> None:
