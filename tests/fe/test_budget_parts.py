@@ -214,6 +214,7 @@ def test_shares_of_the_tolerance_are_relative_or_absolute_and_of_what_is_known()
 
 
 def test_the_work_of_all_marches_is_added_up() -> None:
+    assert Work() == (0, 0, 0)
     found = TotalWork.of([Work(3, 4, 5), Work(30, 40, 50)], 7, 2, 9, flown=100)
     assert found == TotalWork(7, 2, 9, marches=2, steps=133, contact_problems=44, iterations=55)
 
