@@ -467,6 +467,19 @@ def test_a_body_softer_by_a_share_moves_the_speed_by_what_it_moves_the_impulse_a
     errors = Softening(TRUTH, 1e-3).errors
     assert errors["restitution"] == pytest.approx(errors["impulse"] / (STRIKE.mass * STRIKE.velocity), rel=1e-3)
     assert errors["history_l2"] == errors["peak_force"] / TRUTH.quantities["peak_force"] == 1e-3
+    assert errors["peak_depth"] == 1e-3 * TRUTH.quantities["peak_depth"]
+
+
+@pytest.mark.parametrize("leaving", [1e-3, 1.0, 1e3])
+def test_a_body_softer_by_a_share_moves_the_end_by_that_share_or_the_time_in_which_the_path_errs_as_much(
+    leaving: float,
+) -> None:
+    impulse = float(TRUTH.dense.impulse[-1])
+    slow = replace(TRUTH, strike=replace(STRIKE, mass=impulse / (STRIKE.velocity + leaving)))
+    error = Softening(slow, 1e-3).errors["duration"]
+    path = 1e-3 * (slow.quantities["peak_depth"] or 0.0) / leaving
+    assert error == pytest.approx(max(path, 1e-3 * slow.duration), rel=1e-3)
+    assert Softening(replace(slow, separated=False), 1e-3).errors["duration"] == 0.0
 
 
 def test_a_force_of_which_nothing_errs_is_known_but_for_its_last_step() -> None:
