@@ -14,8 +14,8 @@ import pytest
 from fe_contact import reference, relaxing_impact
 from fe_contact.budget import several, solved
 from fe_contact.budget.budget import CAUSES, TotalWork, shares_of
-from fe_contact.budget.certify import _judging, other_mesh
-from fe_contact.budget.refine import AIM, Growth, factors, missing
+from fe_contact.budget.certify import LEAST_ORDER, MESH_ORDER, _judging, other_mesh
+from fe_contact.budget.refine import AIM, FACTOR, Growth, factors, missing
 from fe_contact.budget.runs import AnyRuns, Runs
 from fe_contact.budget.several import Row
 from fe_contact.march.impacts import Followed
@@ -50,6 +50,14 @@ GROWTHS = {
     "penalty": Growth(order=1.0, step=2.0, most=8.0, work=0.5),
     "time_step": Growth(order=1.0, step=1.5, most=8.0, work=1.0),
 }
+
+
+def test_a_round_of_all_that_stands_out_takes_an_error_to_a_half_or_less_and_is_not_dearer_than_that() -> None:
+    """By the orders that bars trust, of the usual elements and of steps extrapolated."""
+    orders = {"mesh": MESH_ORDER[4], "time_step": 2, **LEAST_ORDER}
+    assert set(FACTOR) == set(orders)
+    for cause, factor in FACTOR.items():
+        assert 2.0 <= factor ** orders[cause] <= 4.0
 
 
 @pytest.mark.parametrize("growths", [certify.GROWTH, course.GROWTH])

@@ -639,6 +639,20 @@ def test_fields_of_a_body_strained_alike_everywhere_are_that_strain() -> None:
     assert area(*fields.points[fields.triangles.T]) == pytest.approx(course.unit**2 * area(*elements), rel=0.01)
 
 
+@pytest.mark.parametrize("steps", [8, 16, 64])
+def test_steps_of_a_loading_are_as_long_as_the_settings_ask_once_it_flows(steps: int) -> None:
+    """In proportion to the depth, from the first one to the end; some more lie before anything yields."""
+    indenter, _ = SceneReader("scene", tables()).indenter(Indenter)
+    course = Course.of(indenter, 0.5 * yield_depth(0.3), 50.0 * yield_depth(0.3))
+    depths = course.depths(steps, course.deepest)
+    assert (depths[0], depths[-1]) == pytest.approx((course.first, course.deepest))
+    ratios = depths[1:] / depths[:-1]
+    flows = depths[1:] > course.firm * (1.0 + 1e-9)
+    assert 4.5 < steps * (ratios[flows].max() - 1.0) < 6.0
+    assert ratios[flows] == pytest.approx(ratios[-1])
+    assert ratios[~flows].max(initial=1.0) < 2.0
+
+
 def area(one: Array, two: Array, three: Array) -> float:
     """Of triangles by their corners (n, 2), taken together."""
     (x, y), (v, w) = (two - one).T, (three - one).T
