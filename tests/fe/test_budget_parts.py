@@ -14,10 +14,20 @@ import pytest
 from fe_contact import reference, relaxing_impact
 from fe_contact.budget import several, solved
 from fe_contact.budget.budget import CAUSES, TotalWork, shares_of
-from fe_contact.budget.certify import LEAST_ORDER, MESH_ORDER, _judging, other_mesh
+from fe_contact.budget.certify import (
+    DAMPED_ANYWHERE,
+    KEPT,
+    LEAST_ORDER,
+    MESH_ORDER,
+    MESH_ORDER_ANYWHERE,
+    NODEWISE_ANYWHERE,
+    _judging,
+    other_mesh,
+)
 from fe_contact.budget.refine import AIM, FACTOR, Growth, factors, missing
 from fe_contact.budget.runs import AnyRuns, Runs
 from fe_contact.budget.several import Row
+from fe_contact.budget.variation import UNORDERED, factor
 from fe_contact.march.impacts import Followed
 from fe_contact.plastic import course
 from fe_contact.plastic.indent import YieldingWay
@@ -56,8 +66,19 @@ def test_a_round_of_all_that_stands_out_takes_an_error_to_a_half_or_less_and_is_
     """By the orders that bars trust, of the usual elements and of steps extrapolated."""
     orders = {"mesh": MESH_ORDER[4], "time_step": 2, **LEAST_ORDER}
     assert set(FACTOR) == set(orders)
-    for cause, factor in FACTOR.items():
-        assert 2.0 <= factor ** orders[cause] <= 4.0
+    for cause, raised in FACTOR.items():
+        assert 2.0 <= raised ** orders[cause] <= 4.0
+
+
+def test_what_deserves_less_trust_is_trusted_no_more_than_another_run_and_no_less_than_a_tenth_of_that() -> None:
+    """Weights make a bar of a mesh that stays as wide as what it changes at least; what branches as fast as a step
+    leave is what the finest run errs by without extrapolation, at least, and at most where no order shows.
+    """
+    once = factor(MESH_ORDER_ANYWHERE, False)
+    for weight in (*DAMPED_ANYWHERE.values(), *NODEWISE_ANYWHERE.values()):
+        assert 1.0 <= weight * once <= 10.0
+    for share in KEPT.values():
+        assert 1.0 / (2**2 - 1) <= share <= UNORDERED
 
 
 @pytest.mark.parametrize("growths", [certify.GROWTH, course.GROWTH])
