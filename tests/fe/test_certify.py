@@ -23,7 +23,7 @@ from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import solve
 from fe_contact.errors import MemoryTooSmall
 from fe_contact.reference import result_of
-from fe_contact.settings import Numerics
+from fe_contact.settings import RANGES, Numerics
 from fe_contact.steppers.steps import Strike
 from fe_contact.targets import half_space
 from lumped import laws, load_curves
@@ -224,6 +224,24 @@ def test_refinement_touches_the_setting_of_its_cause_only(cause: str, scene_of: 
     assert {key for key in before if before[key] != after[key]} == {SETTING[cause]}
     assert after[SETTING[cause]] > before[SETTING[cause]]
     assert dominant(errors, numerics, (SETTING[cause],)) is None
+
+
+def test_all_that_stands_out_is_refined_together_and_what_misses_the_tolerance_alone(scene_of: Scenes) -> None:
+    """Half of the largest error or more; of the tolerance, where that is less. No setting leaves its range."""
+    numerics = plan(scene_of(MATERIALS["elastic"]), {}).numerics
+    errors = dict(zip(CAUSES, (1.0, 0.6, 0.4, 0.01), strict=True))
+
+    def refined(errors: dict[str, float], before: Numerics = numerics, **least: float) -> set[str]:
+        after = dominant(errors, before, (), **least) or before
+        return {cause for cause in CAUSES if getattr(after, SETTING[cause]) > getattr(before, SETTING[cause])}
+
+    first, second, third, last = CAUSES
+    assert refined(errors) == {first, second}
+    assert refined({cause: 100.0 * error for cause, error in errors.items()}, least=1.0) == set(CAUSES)
+    assert refined({cause: 10.0 * error for cause, error in errors.items()}, least=1.0) == {first, second, third}
+    assert refined(errors | {last: 9.0}) == {last}
+    full = numerics.varied(**{SETTING[first]: RANGES[SETTING[first]][1]})
+    assert refined(errors, full) == {second}
 
 
 @dataclass
