@@ -81,7 +81,7 @@ class Variation:
     def energies(self) -> dict[str, float]:
         """Error of every term of the energy account, J; of what the striker takes along by the velocity's."""
         first, second = self.first.energy, self.second.energy
-        strike, factor = self.first.strike, self.factor * self.weights.get("restitution", 1.0)
+        strike, factor = self.first.strike, self.factor * self._weight("restitution")
         speed = factor * self.velocity
         errors = {name: factor * abs(value - second[name]) for name, value in first.items()}
         out = strike.mass * speed * (abs(self.first.leaving_speed) + 0.5 * speed)
@@ -91,7 +91,10 @@ class Variation:
         first, second = self.first.quantities[name], self.second.quantities[name]
         if first is None or second is None:
             return np.inf if first is not second else 0.0
-        return self.factor * self.weights.get(name, 1.0) * max(abs(first - second), around)
+        return self.factor * self._weight(name) * max(abs(first - second), around)
+
+    def _weight(self, name: str) -> float:
+        return self.weights.get(name, 1.0)
 
     def force(self, time: Array) -> Array:
         """Error of the force at times, N: the largest change in the neighbourhood of each.
@@ -102,17 +105,18 @@ class Variation:
         its last step, which no later one evens out.
         """
         places, change = self._pointwise
-        width = max(1, round(SMOOTHING * len(change)))
+        width = round(SMOOTHING * len(change))
         padded = np.pad(change, width, mode="edge")
         around = np.lib.stride_tricks.sliding_window_view(padded, 2 * width + 1).max(axis=1)
         first_step = self.second.duration * self.second.x[1] ** 2
         resolved = time > (first_step if self.unresolved is None else self.unresolved)
         whole = ~resolved | self._about_turn(time)
-        carried = 1.0 if self.second.strike.relaxation.is_elastic else self.weights.get("restitution", 1.0)
-        factor = np.where(whole, max(carried * self.factor, FIRST_ORDER), carried * self.factor)
+        carried = 1.0 if self.second.strike.relaxation.is_elastic else self._weight("restitution")
+        carried *= self.factor
+        factor = np.where(whole, max(carried, FIRST_ORDER), carried)
         factor[time <= self.first.duration * self.first.x[1] ** 2] = max(self.factor, AT_TOUCH)
         if not self.first.separated:
-            factor[time >= self.second.last_step] *= self.weights.get("peak_force", 1.0)
+            factor[time >= self.second.last_step] *= self._weight("peak_force")
         return np.asarray(factor * np.interp(time, places, around))
 
     def _about_turn(self, time: Array) -> npt.NDArray[np.bool_]:
@@ -303,10 +307,9 @@ def _jitter(curve: Curve) -> float:
 
 def _crossings(curve: Curve, corners: Array) -> Array:
     """Shares of the contact, ascending, at which the growing edge stands on corners, once no step passes several."""
-    top = int(curve.radius_squared.argmax()) + 1
-    squares = np.maximum.accumulate(curve.radius_squared[:top])
+    squares = np.maximum.accumulate(curve.radius_squared)
     inside = corners[(corners > 0.0) & (corners**2 < squares[-1])]
-    crossed, steps = np.interp(inside**2, squares, curve.radius_x[:top] ** 2), curve.x**2
+    crossed, steps = np.interp(inside**2, squares, curve.radius_x**2), curve.x**2
     short = np.flatnonzero(np.diff(crossed) < np.interp(crossed[1:], steps[1:], np.diff(steps)))
     return np.asarray(crossed[short[-1] + 1 if short.size else 0 :])
 

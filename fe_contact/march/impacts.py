@@ -105,7 +105,7 @@ def _fallen(gap: Callable[[float], float], top: float) -> float | None:
     late = 2.0 * top
     while gap(late) > 0.0:
         late *= 2.0
-    return float(brentq(gap, top, late, xtol=float(np.finfo(float).tiny), rtol=1e-14))
+    return float(brentq(gap, top, late, xtol=float(np.finfo(float).tiny)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,10 +7,9 @@ Each has nodes and a memory of its own. With a constant Poisson's ratio its surf
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -75,18 +74,10 @@ class BulkSide(ByModes, BodySide):
     moduli: Moduli = field(kw_only=True)
 
     @classmethod
-    def of(
-        cls,
-        body: Recipe[ElasticBody],
-        moduli: Moduli,
-        pace: Pace,
-        relaxation: Relaxation,
-        share: float = 1.0,
-        trace: Callable[[SurfaceOperator], Array] = attrgetter("trace"),
-    ) -> BulkSide:
-        """A meshed body in an impact of this pace; ``trace``: at the common points, from its operator."""
+    def of(cls, body: Recipe[ElasticBody], moduli: Moduli, pace: Pace, relaxation: Relaxation) -> BulkSide:
+        """A meshed body in an impact of this pace, under a pressure at its own points."""
         found = modes(body, *pace.ratios(moduli))
-        return cls(found.operator, relaxation, trace(found.operator), share, modes=found, moduli=moduli)
+        return cls(found.operator, relaxation, found.operator.trace, modes=found, moduli=moduli)
 
     @property
     def steady(self) -> bool:

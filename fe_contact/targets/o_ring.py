@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -86,7 +87,7 @@ def _struck(poisson: float, relaxation: Relaxation, target: ORing, sizes: Sizes)
 
 @cached
 def _relaxing(relaxation: Relaxation, moduli: Moduli, target: ORing, sizes: Sizes, pace: Pace) -> Stacked:
-    side = BulkSide.of(_body.recipe(*sizes), moduli, pace, relaxation, target.lead)
+    side = replace(BulkSide.of(_body.recipe(*sizes), moduli, pace, relaxation), share=target.lead)
     return Stacked(side.operator, (side,), target.section_radius)
 
 

@@ -86,9 +86,10 @@ def read_rod(found: Motion, scene: Scene, elements: int, separated: bool) -> Rod
             rows = rows[:, : fronts[-1] + 1]
             end, rows = rows[TIME, -1], np.hstack([rows, rows[:, -1:]])
         rows = with_fronts(rows, fronts, SPOILED)
-    elif separated:
-        end = _undented(rows)
-    rows = _rod_ended(rows, end, scene.gravity) if separated else stopped(rows, scene.end_time)
+    if separated:
+        rows = _rod_ended(rows, end if jumping else _undented(rows), scene.gravity)
+    else:
+        rows = stopped(rows, scene.end_time)
     highest = _highest(rows) if jumping else peak(rows[TIME], rows[FORCE])
     time, _, velocity, _, _ = rows[:, -1]
     quantities = {

@@ -16,7 +16,7 @@ import pytest
 
 import fe_contact
 from fe_contact.cli import main
-from fe_contact.waves.targets._block import PAUSE, plan, run
+from fe_contact.waves.targets._block import PAUSE, cost, plan, run
 from lumped import Scene
 from lumped.errors import BadInput
 from lumped.result.result import Result
@@ -57,6 +57,12 @@ def test_the_impact_of_a_bar_is_a_rectangle(impact: Result) -> None:
     np.testing.assert_allclose(history.force[history.time < 0.999 * ECHO], 300.0, rtol=1e-9)
     assert history.time[0] == 0.0
     assert history.force[-1] == 0.0
+
+
+def test_the_cost_of_a_bar_counts_the_nodes_of_its_march() -> None:
+    scene = Scene.load("bar-impact")
+    numerics = plan(scene, {}).numerics
+    assert abs(cost(scene, numerics).unknowns - run(scene, numerics).unknowns) <= 2
 
 
 def test_the_bouncing_bar_follows_the_exact_one(bouncing: Result) -> None:

@@ -24,6 +24,7 @@ from fe_contact.cli import main
 from fe_contact.march.impacts import FAINTEST, Grounded, Landing, Released, _fallen, follow, landing
 from fe_contact.steppers.scaled_surface import MEMORY_POINTS, POINTS_A_STEP
 from fe_contact.steppers.steps import Strike
+from fe_contact.targets.base import struck
 from lumped.laws import mdr
 from lumped.materials import Relaxation
 
@@ -364,3 +365,12 @@ def test_what_remembers_by_two_surfaces_is_struck_once(name: str) -> None:
     values = {"motion.impacts": 2, "motion.end_time": 1.0, "model.gravity": 9.81}
     with pytest.raises(lumped.errors.BadInput, match=r"motion\.impacts: 2: fe, .* follows one impact; accepted: 1"):
         fe_contact.run(lumped.Scene.load(name, values), tolerance=1e-2)
+
+
+def test_a_round_striker_lands_where_nothing_lies_below_it() -> None:
+    """On the axis alone, where it meets a surface at rest as it sets down."""
+    scene = lumped.Scene.load("polymer-sphere")
+    numerics = plan(scene, {"tolerance": 0.1}).numerics
+    stepper = struck(scene.geometry, numerics).stepper(Strike.of(scene), numerics, ())
+    gaps = stepper.clearance(stepper.remembered(stepper.touch().memory), 0.0)
+    assert np.flatnonzero(gaps == 0.0) == [stepper.standing()]

@@ -14,11 +14,23 @@ import pytest
 from fe_contact import reference, relaxing_impact
 from fe_contact.budget import several, solved
 from fe_contact.budget.budget import CAUSES, TotalWork, shares_of
-from fe_contact.budget.certify import _judging, other_mesh
-from fe_contact.budget.refine import Growth
+from fe_contact.budget.certify import (
+    DAMPED_ANYWHERE,
+    KEPT,
+    LEAST_ORDER,
+    MESH_ORDER,
+    MESH_ORDER_ANYWHERE,
+    NODEWISE_ANYWHERE,
+    _judging,
+    other_mesh,
+)
+from fe_contact.budget.refine import AIM, FACTOR, Growth, factors, missing
 from fe_contact.budget.runs import AnyRuns, Runs
 from fe_contact.budget.several import Row
+from fe_contact.budget.variation import UNORDERED, factor
 from fe_contact.march.impacts import Followed
+from fe_contact.plastic import course
+from fe_contact.plastic.indent import YieldingWay
 from fe_contact.settings import WaveNumerics
 from fe_contact.steppers.steps import Work
 from fe_contact.waves import certify
@@ -41,6 +53,106 @@ def test_what_a_step_is_worth_is_what_it_takes_from_the_bar(order: float, step: 
     """A share of an error that falls as the setting to minus ``order``, over what the march then costs more."""
     left = 0.3 * step**-order
     assert Growth(order, step, most=4.0, work=0.5).worth(0.3) == pytest.approx((0.3 - left) / (0.5 * math.log(step)))
+
+
+GROWTHS = {
+    "mesh": Growth(order=2.0, step=1.25, most=8.0, work=2.0),
+    "penalty": Growth(order=1.0, step=2.0, most=8.0, work=0.5),
+    "time_step": Growth(order=1.0, step=1.5, most=8.0, work=1.0),
+}
+
+
+def test_a_round_of_all_that_stands_out_takes_an_error_to_a_half_or_less_and_is_not_dearer_than_that() -> None:
+    """By the orders that bars trust, of the usual elements and of steps extrapolated."""
+    orders = {"mesh": MESH_ORDER[4], "time_step": 2, **LEAST_ORDER}
+    assert set(FACTOR) == set(orders)
+    for cause, raised in FACTOR.items():
+        assert 2.0 <= raised ** orders[cause] <= 4.0
+
+
+def test_what_deserves_less_trust_is_trusted_no_more_than_another_run_and_no_less_than_a_tenth_of_that() -> None:
+    """Weights make a bar of a mesh that stays as wide as what it changes at least; what branches as fast as a step
+    leave is what the finest run errs by without extrapolation, at least, and at most where no order shows.
+    """
+    once = factor(MESH_ORDER_ANYWHERE, False)
+    for weight in (*DAMPED_ANYWHERE.values(), *NODEWISE_ANYWHERE.values()):
+        assert 1.0 <= weight * once <= 10.0
+    for share in KEPT.values():
+        assert 1.0 / (2**2 - 1) <= share <= UNORDERED
+
+
+@pytest.mark.parametrize("growths", [certify.GROWTH, course.GROWTH])
+def test_no_cause_alone_makes_a_round_more_than_four_times_as_dear(growths: dict[str, Growth]) -> None:
+    """Nor more than twice where its bar misses by little; and a step is one: it raises, and may be taken.
+
+    Unknowns of a mesh in the plane go as the square of its elements, and no setting comes for nothing.
+    """
+    assert set(growths) == set(CAUSES)
+    assert growths["mesh"].work >= 2.0
+    assert min(growth.work for growth in growths.values()) >= 0.1
+    for growth in growths.values():
+        assert 1.0 < growth.step <= growth.most
+        assert growth.step**growth.work <= 2.0
+        assert growth.most**growth.work <= 4.0
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_settings_are_raised_until_bars_are_predicted_to_meet_the_tolerance_and_no_further(seed: int) -> None:
+    """Of two quantities: some last step is needed, and no cause alone would do it for less work."""
+    rng = np.random.default_rng(seed)
+    shares = {cause: rng.uniform(0.0, 2.0, 2) for cause in GROWTHS}
+
+    def bar(chosen: dict[str, float]) -> float:
+        left = [share / chosen[cause] ** GROWTHS[cause].order for cause, share in shares.items()]
+        return float(np.max(sum(left)))
+
+    chosen = factors(shares, GROWTHS, dict.fromkeys(GROWTHS, 1e3))
+    assert bar(chosen) <= AIM
+    raised = [cause for cause, factor in chosen.items() if factor > 1.0]
+    assert any(bar(chosen | {cause: chosen[cause] / GROWTHS[cause].step}) > AIM for cause in raised)
+    cost = math.prod(chosen[cause] ** GROWTHS[cause].work for cause in GROWTHS)
+    for cause, growth in GROWTHS.items():
+        alone = dict.fromkeys(GROWTHS, 1.0)
+        while bar(alone) > AIM and alone[cause] < 1e3:
+            alone[cause] *= growth.step
+        assert bar(alone) > AIM or cost <= 1.01 * growth.step**growth.work * alone[cause] ** growth.work
+
+
+def test_a_setting_is_raised_within_its_room_and_one_that_errs_by_nothing_stays() -> None:
+    shares = {"mesh": np.array([4.0]), "penalty": np.array([0.0]), "time_step": np.array([4.0])}
+    room = {"mesh": 1.25**2, "penalty": 8.0, "time_step": 1.0}
+    assert factors(shares, GROWTHS, room) == {"mesh": 1.25**2, "penalty": 1.0, "time_step": 1.0}
+    calm = {cause: 0.2 * share for cause, share in shares.items() if cause != "mesh"}
+    equal = {cause: np.array([0.5]) for cause in ("mesh", "penalty")}
+    assert factors(equal, GROWTHS, room) == {"mesh": 1.0, "penalty": 2.0}, "which is cheaper"
+    assert factors(calm, GROWTHS, room) == {"penalty": 1.0, "time_step": 1.0}, "bars meet the tolerance"
+
+
+def test_steps_are_raised_to_a_whole_number_and_all_else_as_far_as_predicted(numerics: WaveNumerics) -> None:
+    shares = {cause: np.array([2.0]) for cause in CAUSES}
+    finer = missing(shares, certify.GROWTH, numerics, ("far_radius",))
+    room = {cause: growth.most for cause, growth in certify.GROWTH.items()} | {"far_field": 1.0}
+    raised = factors(shares, certify.GROWTH, room)
+    assert raised["mesh"] > 1.0
+    assert finer.elements_per_contact == raised["mesh"] * numerics.elements_per_contact
+    assert (finer.steps, type(finer.steps)) == (raised["time_step"] * numerics.steps, int)
+    assert finer.far_radius == numerics.far_radius
+
+
+@pytest.mark.parametrize("missed", [0.5, 0.99, 1.01, 2.0])
+def test_what_yields_is_pressed_again_with_finer_settings_where_bars_miss_the_tolerance(
+    missed: float, numerics: WaveNumerics
+) -> None:
+    """By the sum of all causes at the worst depth."""
+    nothing: Any = None
+    share = missed * numerics.tolerance
+    found: Any = SimpleNamespace(
+        budget={"mesh": share * np.array([0.6, 0.1]), "time_step": share * np.array([0.4, 0.8])}, numerics=numerics
+    )
+    way = YieldingWay(nothing, nothing, frozenset(), nothing)
+    assert (way.finer(found).settings is None) == (missed < 1.0)
+    kept = YieldingWay(nothing, nothing, frozenset({"elements_per_contact", "steps"}), nothing)
+    assert kept.finer(found).settings is None
 
 
 def waves(numerics: WaveNumerics, pinned: tuple[str, ...] = ()) -> Waves:
@@ -136,6 +248,7 @@ def test_shares_of_the_tolerance_are_relative_or_absolute_and_of_what_is_known()
 
 
 def test_the_work_of_all_marches_is_added_up() -> None:
+    assert Work() == (0, 0, 0)
     found = TotalWork.of([Work(3, 4, 5), Work(30, 40, 50)], 7, 2, 9, flown=100)
     assert found == TotalWork(7, 2, 9, marches=2, steps=133, contact_problems=44, iterations=55)
 

@@ -13,7 +13,7 @@ from scipy.optimize import minimize
 
 from fe_contact.bodies.pressing import _place, contact_end
 from fe_contact.contact import problem as contact
-from fe_contact.contact.enforcement.base import ENFORCEMENTS
+from fe_contact.contact.enforcement.base import ENFORCEMENTS, Enforcement
 from fe_contact.contact.problem import ContactProblem, ContactSolution, PressedSurface, moved, solve
 
 augmented, corrected, exact, penalty = (
@@ -251,6 +251,19 @@ def test_every_enforcement_passes_the_flag_on(name: str, monkeypatch: pytest.Mon
     assert ENFORCEMENTS.get(name).enforce(problem, touching).converged
     monkeypatch.setattr(contact, "MAX_ITERATIONS", 1)
     assert not ENFORCEMENTS.get(name).enforce(problem, touching).converged
+
+
+@pytest.mark.parametrize("enforcement", [penalty, exact])
+def test_a_contact_that_loses_one_node_at_a_time_is_found_however_many_it_has_to_lose(enforcement: Enforcement) -> None:
+    """A string held far away over a parabola: while it clings to the flank, the outermost node alone is pulled off."""
+    nodes, far = 50, 1e3
+    stiffness = 2.0 * np.eye(nodes) - np.eye(nodes, k=1) - np.eye(nodes, k=-1)
+    stiffness[0, 0], stiffness[-1, -1] = 1.0, 1.0 + 1.0 / far
+    surface = PressedSurface(stiffness, np.eye(nodes), np.ones(nodes))
+    parabola = 1.0 - (np.arange(nodes) / nodes) ** 2
+    found = enforcement.enforce(ContactProblem(surface, parabola, 1e6), np.ones(nodes, bool))
+    assert found.converged
+    assert found.iterations == 1 + nodes - np.count_nonzero(found.pressure)
 
 
 @pytest.mark.parametrize("name", ENFORCEMENTS.names)

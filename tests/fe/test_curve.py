@@ -10,7 +10,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fe_contact.budget.curve import PEAK_SHARE, PLACES, Curve, LocalPolynomials, fitted_peak, peak, seen_from_both_sides
-from fe_contact.budget.variation import LATE, Variation, calmest, calmest_at_corners
+from fe_contact.budget.variation import LATE, Variation, _crossings, calmest, calmest_at_corners
 from fe_contact.march.impact import STEPS_ALLOWED, share_of_rest, step_length, time_left
 from fe_contact.steppers.steps import Strike
 from lumped import Relaxation, Scene
@@ -90,6 +90,24 @@ def test_a_force_that_jitters_from_element_to_element_is_evened_or_read_at_corne
     curve, time = crossing(256, corners, 1e-4), np.linspace(0.1, 0.9, 50)
     true, calm = bump(256, 0.0).force(time), calmest_at_corners(curve, asked)
     assert np.abs(calm.force(time) - true).max() < 0.03 * np.abs(curve.force(time) - true).max()
+
+
+@pytest.mark.parametrize("steps", [64, 256])
+def test_an_edge_is_known_to_meet_every_corner_that_it_reaches(steps: int) -> None:
+    """Within a step, on its way out; the last of them in the step after which it turns."""
+    smooth = bump(steps, 0.0)
+    curve = replace(smooth, radius_x=smooth.x, radius_squared=np.sin(np.pi * smooth.x**2) ** 2)
+    top = int(curve.radius_squared.argmax())
+    last = np.sqrt(curve.radius_squared[top - 1 : top + 1].mean())
+    reached = np.append(np.linspace(0.1, 0.9, 9), last)
+    crossed = _crossings(curve, np.concatenate([[0.0], reached, [1.1]]))
+    assert crossed == pytest.approx(np.arcsin(reached) / np.pi, abs=1.5 / steps)
+    assert smooth.x[top - 1] ** 2 < crossed[-1] < smooth.x[top] ** 2
+    close = np.linspace(0.0, 0.99, 5 * steps // 8)
+    exact, few = np.arcsin(close) / np.pi, _crossings(curve, close)
+    passed = np.flatnonzero(np.diff(exact) < 2.0 * np.sqrt(exact[1:]) / steps)  # by a step that is as long as this
+    assert 0 < len(few) < len(close) - 10
+    assert few.size == pytest.approx(len(close) - 1 - passed[-1], abs=1)
 
 
 @pytest.mark.parametrize("steps", [40, 80, 256])

@@ -272,6 +272,22 @@ def test_a_fluid_stops_a_striker_when_it_has_taken_all_but_a_faint_share_of_its_
     assert found.time[resting] < 0.7 * 200.0, "before the end"
 
 
+@pytest.mark.parametrize("restitution", [5e-3, 5e-4, 5e-5])
+def test_a_punch_that_a_fluid_throws_back_leaves_with_all_that_is_not_rest(
+    restitution: float, settings_of: Settings
+) -> None:
+    """An oscillator whose spring creeps: e = exp(-pi z/(1 - z^2)^(1/2)), z the damping; rest is below 1e-4."""
+    decay = -math.log(restitution) / math.pi
+    damping = decay / math.hypot(1.0, decay)
+    half = math.pi / math.sqrt(1.0 - damping**2)
+    fluid = Relaxation(0.0, (1.0,), (0.5 / damping,))
+    strike = Strike(np.zeros_like, 1.0, 1.0, 0.0, fluid, 4.0 * half)
+    numerics = settings_of(strike, steps=400, contact_time=half, peak_share=0.1)
+    found = marched(FlatStepper(strike, 1.0, 1.0, numerics))
+    assert found.separated == (restitution > 1e-4)
+    assert found.impulse[-1] - 1.0 == pytest.approx(restitution, rel=0.05)
+
+
 def test_the_share_of_the_penalty_is_safety_times_what_half_of_it_changes() -> None:
     """Of a stiffness k a force goes with its root: the share counts all of dk/k, twice dF/F."""
     scene = Scene.load("polymer-punch")

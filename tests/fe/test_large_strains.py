@@ -322,6 +322,14 @@ def test_st_venants_material_bears_waves_along_the_stress_down_to_a_stretch(stre
     assert elliptic(tangent) == (3.0 * stretch**2 > 1.0)
 
 
+@pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
+def test_whether_waves_are_borne_is_no_question_of_units(unit: float) -> None:
+    for stretch in (0.57, 0.9):
+        gradient = np.array([0.0, 0.0, 0.0, stretch - 1.0, 0.0])[:, None]
+        tangent = Hyperelastic(energy_of("st_venant_kirchhoff"), unit, 0.0).respond(gradient, ()).tangent
+        assert elliptic(tangent) == (3.0 * stretch**2 > 1.0)
+
+
 @pytest.mark.tenth
 def test_a_finer_run_lies_within_both_bars() -> None:
     """Of a deep indentation, where strains are large."""

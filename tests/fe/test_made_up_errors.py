@@ -168,10 +168,17 @@ def test_ends_that_move_in_proportion_to_the_step_are_covered_though_the_force_k
         assert over(found, "duration")["duration"] <= 1.0, late
 
 
-def test_ends_that_move_as_the_force_does_have_tight_bars(settings: Numerics) -> None:
-    for (size, phase), late in zip(sizes(5), np.geomspace(6e-4, 2e-3, CASES), strict=True):
+@pytest.mark.parametrize(("lates", "median"), [((2e-4, 5e-4), 0.6), ((1e-3, 2e-3), 0.3)])
+def test_ends_that_move_as_the_force_does_have_tight_bars(
+    lates: tuple[float, float], median: float, settings: Numerics
+) -> None:
+    """By another order where the fewest steps, four times as long, err by no more than a per cent."""
+    shares = []
+    for (size, phase), late in zip(sizes(5), np.geomspace(*lates, CASES), strict=True):
         found = judged(settings, {2: 0.1 * size, 3: 0.02 * size}, phase, {2: late, 3: 0.2 * late})
-        assert 0.25 < over(found, "duration")["duration"] <= 1.0, late
+        shares.append(over(found, "duration")["duration"])
+    assert 0.25 < min(shares) <= max(shares) <= 1.0
+    assert np.median(shares) == pytest.approx(median, rel=0.35)
 
 
 def wave(size: float, period: float, phase: float) -> Callable[[Array], Array]:
@@ -432,6 +439,140 @@ def test_a_speed_that_errs_before_the_end_makes_the_bar_of_what_the_striker_take
     assert trusted["stored"] == pytest.approx(2.0 * worth * 0.2)
     assert trusted["viscous"] == 0.0
     assert trusted["out"] == pytest.approx(2.0 * change.energies["out"], rel=1e-2)
+
+
+def test_what_a_striker_that_stands_takes_along_errs_by_the_energy_of_the_speed_that_it_may_have() -> None:
+    impulse = float(TRUTH.dense.impulse[-1])
+    strike = replace(STRIKE, mass=2.0, velocity=0.5 * impulse)
+    stands, leaves = (replace(made_up(STEPS, off), strike=strike) for off in (np.zeros_like, lambda t: 1e-3 * t))
+    change = Variation(stands, leaves, 1.0)
+    speed = change.errors["restitution"] * strike.velocity
+    assert abs(stands.leaving_speed) < 1e-5 * speed
+    assert change.energies["out"] == pytest.approx(speed**2, rel=1e-3)
+
+
+@pytest.mark.parametrize(("power", "falls"), [(1.0, False), (1.25, False), (1.75, True), (2.0, True)])
+def test_a_jitter_belongs_to_the_steps_where_it_falls_with_them(power: float, falls: bool, settings: Numerics) -> None:
+    """A force jitters by the more the shorter the step in which its impulse does: as the step to one power less."""
+
+    def run(numerics: Numerics) -> Curve:
+        smooth = made_up(numerics.steps, np.zeros_like)
+        by_turns = (-1.0) ** np.arange(numerics.steps + 1) * smooth.x
+        return replace(smooth, mean_force=smooth.mean_force + 10.0 / numerics.steps**power * by_turns)
+
+    assert _time_steps(run, settings, False).jitter_falls == falls
+
+
+def test_a_body_softer_by_a_share_moves_the_speed_by_what_it_moves_the_impulse_and_the_force_by_the_share() -> None:
+    errors = Softening(TRUTH, 1e-3).errors
+    assert errors["restitution"] == pytest.approx(errors["impulse"] / (STRIKE.mass * STRIKE.velocity), rel=1e-3)
+    assert errors["history_l2"] == errors["peak_force"] / TRUTH.quantities["peak_force"] == 1e-3
+    assert errors["peak_depth"] == 1e-3 * TRUTH.quantities["peak_depth"]
+
+
+@pytest.mark.parametrize("leaving", [1e-3, 1.0, 1e3])
+def test_a_body_softer_by_a_share_moves_the_end_by_that_share_or_the_time_in_which_the_path_errs_as_much(
+    leaving: float,
+) -> None:
+    impulse = float(TRUTH.dense.impulse[-1])
+    slow = replace(TRUTH, strike=replace(STRIKE, mass=impulse / (STRIKE.velocity + leaving)))
+    error = Softening(slow, 1e-3).errors["duration"]
+    path = 1e-3 * (slow.quantities["peak_depth"] or 0.0) / leaving
+    assert error == pytest.approx(max(path, 1e-3 * slow.duration), rel=1e-3)
+    assert Softening(replace(slow, separated=False), 1e-3).errors["duration"] == 0.0
+
+
+def test_a_force_of_which_nothing_errs_is_known_but_for_its_last_step() -> None:
+    nothing: Any = None
+    found = Budget(TRUTH, nothing, dict.fromkeys(CAUSES, ()), nothing, nothing)
+    times = np.array([0.0, 0.5, 0.999 * TRUTH.last_step, 0.5 * (1.0 + TRUTH.last_step)])
+    assert found.force_error(times) == pytest.approx([0.0, 0.0, 0.0, TRUTH.force(np.array([TRUTH.last_step]))[0]])
+
+
+def in_units(curve: Curve, time: float, length: float, force: float) -> Curve:
+    """The same contact with so many of new units to one of the old."""
+    strike, relaxation = curve.strike, curve.strike.relaxation
+    return replace(
+        curve,
+        strike=replace(
+            strike,
+            mass=strike.mass * force * time**2 / length,
+            velocity=strike.velocity * length / time,
+            relaxation=replace(relaxation, times=tuple(time * one for one in relaxation.times)),
+        ),
+        duration=time * curve.duration,
+        mean_force=force * curve.mean_force,
+        depth=length * curve.depth,
+        radius_squared=length**2 * curve.radius_squared,
+        end_spread=time * curve.end_spread,
+        energy={name: force * length * value for name, value in curve.energy.items()},
+    )
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_errors_are_the_same_in_all_units(seed: int) -> None:
+    """Of contacts that end apart, elastic or not, that part or are cut off, on a mesh that stays or follows."""
+    rng, relaxation = np.random.default_rng(seed), Relaxation(1.0, (1.0,), (0.3,)) if seed & 1 else Relaxation(1.0)
+    time, length, force = units = 10 ** rng.uniform(-4.0, 4.0, 3)
+    runs = [
+        replace(
+            made_up(STEPS // part, wave(1e-3 * part**2, 0.5, phase), late=0.02 * part),
+            strike=replace(STRIKE, relaxation=relaxation),
+            separated=not seed & 2,
+            end_spread=1e-3 * part,
+            energy={name: float(value) for name, value in zip(TRUTH.energy, rng.uniform(size=7), strict=True)},
+        )
+        for part, phase in ((1, 0.0), (2, 1.0), (4, 2.0))
+    ]
+    told = {"weights": {"restitution": 3.0, "peak_force": 2.0}, "creeps": bool(seed & 4)}
+
+    def change(runs: list[Curve], unresolved: float | None) -> Variation:
+        finer, coarser = extrapolated(runs[0], runs[1], 2), extrapolated(runs[1], runs[2], 2)
+        return Variation(finer, coarser, 0.7, unresolved=unresolved, **told)
+
+    scales = {"peak_force": force, "impulse": force * time, "peak_depth": length, "peak_time": time, "duration": time}
+    places = np.linspace(0.0, 1.05, 200)
+    for unresolved in (None, 0.1):
+        one = change(runs, unresolved)
+        other = change([in_units(run, *units) for run in runs], unresolved and unresolved * time)
+        assert other.errors == pytest.approx({name: scales.get(name, 1.0) * e for name, e in one.errors.items()})
+        assert other.energies == pytest.approx({name: force * length * e for name, e in one.energies.items()})
+        assert other.force(time * places) == pytest.approx(force * one.force(places))
+
+
+def test_no_order_is_trusted_up_to_the_second_step_of_the_coarsest_run(settings: Numerics) -> None:
+    """Whose steps end at the squares of equal shares of the root of its duration; there the whole change counts."""
+    runs = {STEPS // part: made_up(STEPS // part, lambda t, c=part: 1e-3 * c**2 * t, 0.01 * part) for part in (1, 2, 4)}
+    change, *_ = _time_steps(lambda one: runs[one.steps], settings, False).changes
+    assert change is not None
+    times = 1.04 * (8 / STEPS) ** 2 * np.array([0.999, 1.001])
+    band, trusted = change.force(times), replace(change, unresolved=0.0).force(times)
+    assert change.factor < 1.0
+    assert band == pytest.approx([1.25 / change.factor, 1.0] * trusted)
+
+
+def test_a_force_that_changes_in_one_place_is_as_well_known_as_before_far_from_there() -> None:
+    other = made_up(STEPS, lambda share: 1e-3 * np.exp(-(((share - 0.5) / 0.02) ** 2)))
+    band = Variation(TRUTH, other, 1.0).force(np.array([0.1, 0.46, 0.5, 0.54, 0.9]))
+    assert band[1:-1].min() > 0.5 * band.max()
+    assert band[[0, -1]].max() < 1e-3 * band.max()
+
+
+@pytest.mark.parametrize("trusted", [0.5, 5.0])
+def test_the_band_of_a_force_counts_the_touch_and_the_steps_without_an_order_more(trusted: float) -> None:
+    """And a last step more than others only where it is cut off."""
+    other = made_up(STEPS // 4, lambda share: 1e-3 * (1.0 + share), 0.5)
+    step, seen = (STEPS**-2, 1.5 * (4 / STEPS) ** 2)  # the first of either
+    times = np.array([0.9 * step, 1.1 * step, 0.99 * seen, 1.01 * seen, 0.5, 1.0])
+    least = np.array([3.0, 1.25, 1.25, 0.0, 0.0, 0.0])
+    changes = Variation(TRUTH, other, 10.0).force(times) / 10.0
+    weights = {"peak_force": 7.0}
+    band = Variation(TRUTH, other, trusted, weights).force(times)
+    assert band == pytest.approx(np.maximum(trusted, least) * changes)
+    for separated in (True, False):
+        ended = [replace(one, separated=separated, duration=1.0) for one in (TRUTH, other)]
+        weighed, plain = (Variation(*ended, trusted, one).force(times) for one in (weights, {}))
+        assert weighed == pytest.approx([1.0, 1.0, 1.0, 1.0, 1.0, 1.0 if separated else 7.0] * plain)
 
 
 def test_the_steps_that_count_are_seconds_however_long_the_contact(settings: Numerics) -> None:

@@ -152,6 +152,17 @@ def thrown_back(moved: float, lower: float) -> Run:
     return Run(reading(rows), {}, time.size - 1, time.size, contacts)
 
 
+@pytest.mark.parametrize(("half", "quarter"), [(0.0, 0.1), (0.04, 0.02), (0.02, 0.1)])
+def test_contacts_move_by_what_half_the_steps_move_them_or_half_of_what_a_quarter_does(
+    half: float, quarter: float
+) -> None:
+    """Two marches may agree by chance, of three with an order of one neither is off by more."""
+    fine = thrown_back(0.0, 0.0)
+    first, second = fine.contacts
+    later = [replace(fine, contacts=(first, second | {"start": (2.0 + by) * END})) for by in (half, quarter)]
+    assert line(fine, *later).moved == pytest.approx(max(half, 0.5 * abs(quarter - half)) * END)
+
+
 def test_gravity_changes_the_speed_for_as_long_as_a_first_contact_may_end_later() -> None:
     """By what the steps move its end, over a safety that does not count here, or by how long it may faintly go on."""
     fine, moved, lower = thrown_back(0.0, 0.0), 0.03, 0.02 * SPEED * END

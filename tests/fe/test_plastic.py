@@ -600,3 +600,60 @@ def test_stresses_of_a_field_stand_by_their_names() -> None:
     hooke = 2.0 * shear * (strains + nu / (1.0 - 2.0 * nu) * strains.sum())
     stress = ground.yielding_of(nu, 1.0, 0.0).flowed(gradient, *ground.at_rest((1,))).stress[STRESS]
     assert stress[:, 0] == pytest.approx([*hooke, shear * slide])
+
+
+def test_fields_of_a_body_strained_alike_everywhere_are_that_strain() -> None:
+    """Displacement in proportion to the place but for a shift, Hooke's stress, the pressure given, in SI units."""
+    indenter, _ = SceneReader("scene", tables()).indenter(Indenter)
+    deepest = 3.0 * yield_depth(0.3)
+    course = Course.of(indenter, deepest, deepest)
+    body = course.ground(settings(COARSEST, course))
+    wide, deep, shift, radius = 2e-6, -3e-6, -5e-6, 0.6
+    place = body.basis.doflocs
+    moved = np.stack([wide * place[0], deep * place[1] + shift], axis=1).ravel()
+    pressure = 1e-3 * (1.0 + body.points)
+    peak = Station(4e-6, moved, body.rest, 0.0, pressure, radius)
+    again = PressedAgain(course, body, peak, 0.5 * moved)
+    fields, amount = again.fields(0.25)
+    assert not amount.any()
+    assert (fields.time, fields.depth, fields.contact_radius) == (0.25, 4e-6 * course.unit, radius * course.unit)
+    r, z = fields.points.T
+    expected = np.stack([wide * r, deep * z + shift * course.unit], axis=1)
+    np.testing.assert_allclose(fields.displacement, expected, atol=1e-12 * course.unit)
+    assert r.max() == pytest.approx(ground.CORE * course.unit, rel=0.2)
+    mean, shear = (2.0 * wide + deep) / 3.0, course.modulus * 0.5 * (1.0 - 0.3)
+    bulk = 2.0 * shear * 1.3 / (3.0 * (1.0 - 0.6))
+    hooke = 2.0 * shear * (np.array([wide, deep, wide]) - mean) + 3.0 * bulk * mean
+    np.testing.assert_allclose(fields.stress, np.broadcast_to([*hooke, 0.0], (r.size, 4)), rtol=1e-6, atol=1e-3)
+    top = (z == 0.0) & (r <= radius * course.unit)
+    assert np.array_equal(fields.contact == 1, top)
+    within = top & (r > body.points[0] * course.unit)
+    assert fields.pressure[within] == pytest.approx(1e-3 * course.modulus * (1.0 + r[within] / course.unit))
+    assert not fields.pressure[~top].any()
+    dent = again.dent
+    assert dent.pressed == pytest.approx(shift * course.unit)
+    assert dent.left == pytest.approx(0.5 * shift * course.unit)
+    assert np.all(np.diff(dent.radius) > 0.0)
+    mesh = body.basis.mesh
+    elements = mesh.p.T[mesh.t[:, body.elements]]
+    assert area(*fields.points[fields.triangles.T]) == pytest.approx(course.unit**2 * area(*elements), rel=0.01)
+
+
+@pytest.mark.parametrize("steps", [8, 16, 64])
+def test_steps_of_a_loading_are_as_long_as_the_settings_ask_once_it_flows(steps: int) -> None:
+    """In proportion to the depth, from the first one to the end; some more lie before anything yields."""
+    indenter, _ = SceneReader("scene", tables()).indenter(Indenter)
+    course = Course.of(indenter, 0.5 * yield_depth(0.3), 50.0 * yield_depth(0.3))
+    depths = course.depths(steps, course.deepest)
+    assert (depths[0], depths[-1]) == pytest.approx((course.first, course.deepest))
+    ratios = depths[1:] / depths[:-1]
+    flows = depths[1:] > course.firm * (1.0 + 1e-9)
+    assert 4.5 < steps * (ratios[flows].max() - 1.0) < 6.0
+    assert ratios[flows] == pytest.approx(ratios[-1])
+    assert ratios[~flows].max(initial=1.0) < 2.0
+
+
+def area(one: Array, two: Array, three: Array) -> float:
+    """Of triangles by their corners (n, 2), taken together."""
+    (x, y), (v, w) = (two - one).T, (three - one).T
+    return 0.5 * float(np.abs(x * w - y * v).sum())

@@ -56,7 +56,7 @@ def plan(scene: Scene, given: Given) -> Plan:
 
 def cost(scene: Scene, numerics: WaveNumerics) -> Cost:
     """Of an error budget with these settings."""
-    return Cost.of(max(numerics.steps // 2, 2), numerics, scene.motion.impacts)
+    return Cost.of(_elements(numerics), numerics, scene.motion.impacts)
 
 
 def way(scene: Scene, chosen: Plan, progress: Progress) -> Doubling:
@@ -76,6 +76,11 @@ def _steps(bar: Bar) -> int:
     return 4 * math.ceil(min(max(STEPS, echo), MANY) / 4)
 
 
+def _elements(numerics: WaveNumerics) -> int:
+    """Along the bar: a wave there and back crosses every one twice, each time in a step."""
+    return numerics.steps // 2
+
+
 def usual_mass(scene: Scene) -> str:
     """One contact ends with the march: mass at its nodes carries its jumps exactly. More of them need a surface
     without mass, or each would cost the energy of the mass that it stops.
@@ -90,7 +95,7 @@ def usual_tip(scene: Scene) -> float:
 
 def _varied(scene: Scene, numerics: WaveNumerics) -> dict[str, WaveNumerics]:
     """Settings with one cause of error changed: steps and elements together; what another method than ours errs by."""
-    half = numerics.varied(steps=max(numerics.steps // 2, 4))
+    half = numerics.varied(steps=numerics.steps // 2)
     return {"time_step": half, **witness(numerics, USUAL | {"mass": usual_mass(scene)})}
 
 
@@ -118,7 +123,7 @@ def echo_time(scene: Scene) -> float:
 def run(scene: Scene, numerics: WaveNumerics, counted: Counted = uncounted) -> Run:
     """One march, its steps, ``counted``, those in which a wave crosses an element. Raises NotReached."""
     bar, echo = bar_of(scene), echo_time(scene)
-    elements = max(numerics.steps // 2, 2)
+    elements = _elements(numerics)
     tip = usual_tip(scene)
     body = falling(bar, elements, MASSES.get(numerics.mass), scene.gravity, tip=tip)
     size = pitch(bar.length, elements, tip)
