@@ -104,6 +104,8 @@ def test_the_chart_is_reproducible(body: Path, curve: Path, tmp_path: Path) -> N
     ("options", "message"),
     [
         (["--law", "jankowsky"], "did you mean jankowski?"),
+        (["--law", "jankovski", "--opensees"], "--law: 'jankovski' is not known"),
+        (["--law", "jankovski", "--opensees"], "did you mean jankowski?"),
         (["--law", "tsuji", "--opensees"], "tsuji has no OpenSees material"),
         (["--law", "jankowski", "--opensees", "apdl"], "--opensees: 'apdl': accepted tcl, python"),
         (["--law", "jankowski", "--free", "k,xo"], "xo: unknown parameter"),

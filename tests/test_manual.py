@@ -17,6 +17,8 @@ from fe_contact.cli import main, parser
 from fe_contact.commands import COMMANDS
 from fe_contact.manual.schemas import RESULT
 from fe_contact.manual.site import HERE, MENU
+from lumped import Scene, laws
+from lumped.fit import opensees
 from lumped.paper.claims import misprints
 from lumped.shapes import SHAPES
 
@@ -124,6 +126,17 @@ def test_what_is_written_of_the_code_names_all_of_it(site: Path) -> None:
             assert all(key.meaning in keys for key in table.values())
     assert all(f">{name}</h2>" in commands for name in COMMANDS.names)
     assert errata.count("<tr>") == len(misprints()) + 1
+
+
+def test_the_page_says_which_laws_opensees_has_and_as_what() -> None:
+    """Row by row, each law's material; of the laws that remember there is none to name."""
+    scene, told = Scene.load("steel-ball-sls"), dict[str, str]()
+    page = (HERE / "experiment.md").read_text(encoding="utf-8")
+    for row in page.partition("| `--law` | material |")[2].splitlines()[2:]:
+        names, material = (re.findall(r"`(\w+)`", cell) for cell in row.strip("|").split("|"))
+        told |= dict.fromkeys(names, "".join(material))
+    own = {law.name: opensees.material(laws.get(law.name).of(scene), scene).name for law in opensees.LAWS}
+    assert told == own | {law.name: "" for law in opensees.REMEMBERING}
 
 
 def test_every_example_is_one() -> None:

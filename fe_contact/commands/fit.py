@@ -137,7 +137,8 @@ def _check_opensees(args: argparse.Namespace) -> None:
 
     if args.opensees is None:
         return
-    opensees.check(args.law)
+    with addressed(str(args.curve), OPTIONS):
+        opensees.check(args.law)
     if args.opensees not in opensees.LANGUAGES:
         reason = f"{shown(args.opensees)}: accepted {', '.join(opensees.LANGUAGES)}"
         raise BadInput(Fault("--opensees", "", reason))
