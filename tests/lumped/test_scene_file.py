@@ -139,6 +139,25 @@ def test_unknown_key_names_the_accepted_and_the_nearest() -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("key", "meant"),
+    [
+        ("striker.speed", "velocity"),
+        ("striker.diameter", "radius"),
+        ("striker.type", "shape"),
+        ("target.material.Youngs_Modulus", "E0"),
+        ("target.material.poisson", "nu"),
+        ("target.material.rho", "density"),
+        ("model.g", "gravity"),
+    ],
+)
+def test_what_users_call_a_key_leads_to_it(key: str, meant: str) -> None:
+    """Where letters alone lead elsewhere, as from speed to shape, or nowhere."""
+    (fault,) = faults(changed(key, 1.0))
+    assert fault.startswith(f"scene.toml: {key}: unknown key; ")
+    assert fault.endswith(f"; did you mean {meant}?")
+
+
 def test_all_faults_come_at_once_but_at_most_twenty() -> None:
     table = changed("striker.mass", -1.0)
     table["striker"]["radius"] = math.nan
