@@ -65,7 +65,8 @@ def execute(args: argparse.Namespace) -> int:
     lines = [*summary(found), f"written to {where}"]
     if args.write is not None:
         _write_scene(args.write, found)
-        lines.append(f"the scene with these values: {args.write}")
+        trusted = "" if found.adequate else ", which are not to be trusted"
+        lines.append(f"the scene with these values{trusted}: {args.write}")
     base.say(args, content, lines, f"{name}: identified from {len(curves)} curve{'s' if len(curves) > 1 else ''}")
     for warning in (*warnings, *found.warnings):
         base.complain(warning)
@@ -163,7 +164,8 @@ def _check_written(path: Path | None) -> None:
 
 def _write_scene(path: Path, found: Identified) -> None:
     """The scene file with the values found, called as the file is, and what speaks against them. Raises BadInput."""
-    remarks = "".join(f"# {one}\n" for one in found.warnings)
+    verdict = () if found.adequate else (f"not to be trusted: {found.verdict}",)
+    remarks = "".join(f"# {one}\n" for one in (*verdict, *found.warnings))
     try:
         path.write_text(remarks + toml_text({**found.table, "name": path.stem}), encoding="utf-8")
     except OSError as failure:

@@ -135,9 +135,10 @@ def _warnings(parameters: Mapping[str, Interval], valleys: Sequence[ToldValley])
 def _of_residuals(tested: Whiteness, widened: float, curves: Sequence[FittedCurve]) -> Iterator[str]:
     if tested.of_the_law:
         worst = max(curves, key=lambda curve: curve.error)
-        told = f"what is left is no noise (Ljung-Box, p = {tested.probability:.1g}): the model errs by about"
-        cause = f"{told} {100.0 * worst.error:.2g} % of the peak, or the noise is coloured (--corner)"
-        yield f"{cause}; the intervals are {widened:.2g} times as wide, and not to be trusted"
+        told = f"the values found do not reproduce the curves (Ljung-Box, p = {tested.probability:.1g})"
+        cause = f"{told}: the model errs by about {100.0 * worst.error:.2g} % of the peak, or a low pass changed the"
+        rest = "curves, or the noise is coloured (--corner); values and intervals are not to be trusted, these"
+        yield f"{cause} {rest} {widened:.2g} times as wide as those of noise"
     elif not tested.noise:
         told = f"neighbouring rows of what is left are opposed (Ljung-Box, p = {tested.probability:.1g})"
         cause = "no law's error is so, but noise of less memory than it was taken for"
