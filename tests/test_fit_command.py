@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from fe_contact.cli import main
+from fe_contact.commands.fit import EVERY
 from fe_contact.studies.fit_chart import plot_fit
 from lumped import History, Scene, fit, laws, simulate
 from lumped.result.curve_file import read_curve
@@ -165,6 +166,19 @@ def test_all_laws_are_ranked_the_true_one_first(
     assert len(rows) == len(laws.available())
     names = {f"fits.{kind}" for kind in ("json", "csv", "svg", "png")} | {"forces.csv"}
     assert {path.name for path in where.iterdir()} == names
+
+
+@pytest.mark.tenth
+def test_one_law_and_the_ranking_leave_each_other_s_files(curve: Path, body: Path, empty: Path) -> None:
+    """Told by default into two folders: a folder holds one run."""
+    for law in ("jankowski", EVERY, "jankowski"):
+        assert main(["fit", str(curve), "--law", law, "--scene", str(body), "--quiet"]) == 0
+    assert {path.name for path in empty.glob("fe-contact-out/*/*.csv")} == {
+        "fit.csv",
+        "parameters.csv",
+        "fits.csv",
+        "forces.csv",
+    }
 
 
 def test_all_laws_have_their_own_parameters(curve: Path, body: Path, refused: Callable[..., list[str]]) -> None:

@@ -85,7 +85,7 @@ def override(says: str = SETTINGS) -> methodcaller:
 JSON = option("--json", action="store_true", help="machine-readable result on stdout")
 NO_CACHE = option("--no-cache", action="store_true", help="mesh and condense anew, whatever is known on disk")
 OUTPUT = (
-    option("--out", type=Path, metavar="DIR", help="folder for the results"),
+    option("--out", type=Path, metavar="DIR", help="folder for the results, without those of a former run"),
     JSON,
     option("--quiet", action="store_true", help="no progress on stderr"),
     option("--log", metavar="FILE", help="write progress into a file, line by line"),

@@ -46,7 +46,7 @@ class FitQuestion:
         scene, curve = base.read_scene_for_fit(args), read_curve(args.curve)
         free = None if args.free is None else tuple(name.strip() for name in args.free.split(","))
         fixed = {name: base.number(value, "--fix") for name, value in _pairs(args.fix, "--fix")}
-        run = base.StudyRun.of(args, "fit", scene.name)
+        run = base.StudyRun.of(args, "fit-all" if args.law == EVERY else "fit", scene.name)
         remarks = check_curve(curve, scene, str(args.curve), TOUCH not in {*(free or ()), *fixed})
         return cls(run, scene, curve, free, fixed, remarks)
 
