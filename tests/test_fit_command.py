@@ -9,13 +9,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from fe_contact.cli import main
 from fe_contact.commands.fit import EVERY
-from fe_contact.studies.fit_chart import plot_fit
-from lumped import History, Scene, fit, laws, simulate
+from fe_contact.studies import style
+from fe_contact.studies.fit_chart import plot_fit, plot_ranking
+from fe_contact.studies.identify_chart import plot_identified
+from lumped import History, Scene, fit, identify, laws, simulate
+from lumped.fit.ranking import RankedFit
 from lumped.result.curve_file import read_curve
-from lumped.result.score import normalized_error
+from lumped.result.score import Curve, normalized_error
 
 BODY = "[striker]\nmass = 0.001\nvelocity = 1.0\n"
 LAW = '[law]\nname = "jankowski"\nk = 1e7\nxi = 0.2\n'
@@ -99,6 +103,29 @@ def test_the_chart_is_reproducible(body: Path, curve: Path, tmp_path: Path) -> N
     found = fit(measured, "jankowski", Scene(None, mass=0.001, velocity=1.0))
     first, again = (plot_fit(measured, found, tmp_path / name) for name in ("first", "again"))
     assert [path.read_bytes() for path in first] == [path.read_bytes() for path in again]
+
+
+def test_what_is_left_has_one_sign_in_every_chart(curve: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The curve less the law: of one law, of all, and of an identification; the axis says so."""
+    figures = dict[str, Figure]()
+    monkeypatch.setattr(style, "save", lambda figure, where, name: figures.setdefault(name, figure))
+    measured, found = read_curve(curve), fit(read_curve(curve), "kelvin", Scene(None, mass=0.001, velocity=1.0))
+    left = measured.force - found.history.force_at(measured.time)
+    plot_fit(measured, found, tmp_path)
+    plot_ranking([RankedFit("kelvin", found, 0.0)], measured, tmp_path)
+    sphere = Scene.load("polymer-sphere", {"target.material.C1": 1e4})
+    drop, time = simulate(laws.get("ting").of(sphere), sphere).history, np.linspace(-0.01, 0.03, 200)
+    known = identify({"drop": Curve(time, drop.force_at(time))}, "polymer-sphere", ["E1"])
+    plot_identified(known, tmp_path)
+    drawn = {
+        "fit": (figures["fit"].axes[1].lines[-1], left),
+        "fits": (figures["fits"].axes[0].lines[1], left),
+        "identified": (figures["identified"].axes[1].lines[-1], known.curves[0].force - known.curves[0].fitted),
+    }
+    for name, (line, expected) in drawn.items():
+        assert np.corrcoef(np.asarray(line.get_ydata(), dtype=float), expected)[0, 1] == pytest.approx(1.0), name
+    assert all(figures[name].axes[1].get_ylabel() == "curve − law, %" for name in ("fit", "identified"))
+    assert any("the curve less the law" in text.get_text() for text in figures["fits"].texts)
 
 
 @pytest.mark.parametrize(
