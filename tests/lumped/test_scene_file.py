@@ -224,6 +224,31 @@ def test_overrides_replace_and_are_checked() -> None:
         load(Scene, "polymer-sphere", {"name.first": 1.0})
 
 
+@pytest.mark.parametrize(
+    ("asked", "meant"),
+    [
+        ("folder/fuond.toml", "folder/found.toml"),
+        ("folder/found", "folder/found.toml"),
+        ("polymer-sphere.toml", "polymer-sphere"),
+        ("nowhere/polymer-spher.toml", "polymer-sphere"),
+        ("mnie", "mine.toml"),
+    ],
+)
+def test_a_file_that_is_none_leads_to_the_nearest(
+    asked: str, meant: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of the files beside it and of the packaged names."""
+    monkeypatch.chdir(tmp_path)
+    Path("folder").mkdir()
+    for name in ("mine.toml", "folder/found.toml"):
+        Path(name).touch()
+    with pytest.raises(BadInput) as caught:
+        Scene.load(asked)
+    assert str(caught.value).startswith(f"{asked}: ")
+    assert "no such file" in str(caught.value)
+    assert f"; did you mean {meant}?" in str(caught.value)
+
+
 def test_assignments_are_toml_or_text() -> None:
     assert parse_assignment("striker.radius = 0.01") == ("striker.radius", 0.01)
     assert parse_assignment("model.profile=parabola") == ("model.profile", "parabola")
