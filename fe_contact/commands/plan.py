@@ -87,7 +87,7 @@ def _measured_lines(measured: Sequence[MeasuredEffect], ledger: Sequence[LedgerE
     most = {one.effect: abs(one.change) + one.error for one in measured if one.change is not None and one.error}
     known = [replace(one, estimate=most.get(one.effect, one.estimate)) if one.spread is None else one for one in ledger]
     found = ["measured, as a change of the peak force:", *(f"  {one}" for one in measured)]
-    return [*found, f"by what was measured, {good_to(known)}"]
+    return [*found, f"by what was measured, bars added, {good_to(known)}"]
 
 
 def _takes(scene: Scene, chosen: Plan, given: Table) -> tuple[Cost | None, FeContactError | None]:
