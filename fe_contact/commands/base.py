@@ -300,9 +300,10 @@ def report(
 def _left_out(result: Result | Indentation, asked: Model) -> str:
     """The largest effect left out, and its cure: another method, where a law leaves out what the scene asks for."""
     entry = worst(result.model_ledger)
+    told = entry.told_of(result.ruled_force)
     if entry.key.startswith("model.") and getattr(asked, entry.key.removeprefix("model.")) == entry.value:
-        return f"{entry.sentence.removesuffix(entry.cure)}to include it, as the scene asks: --method fe"
-    return entry.sentence
+        return f"{told.removesuffix(entry.cure)}to include it, as the scene asks: --method fe"
+    return told
 
 
 def complain(message: str) -> None:
