@@ -46,6 +46,7 @@ GROUPS = {  # where a command stands in the help, and what to try first there
 }
 
 
+FILE_KEYS = ("file", "scene")  # ends of the keys that hold the name of a file
 option = partial(methodcaller, "add_argument")  # with argparse's names and keywords: an option, which a parser takes
 SETTINGS = "set a key of the scene file, as striker.velocity=0.1"
 
@@ -112,8 +113,18 @@ def quick(says: str) -> methodcaller:
 
 
 def overrides_of(args: argparse.Namespace) -> dict[str, object]:
-    """Dotted keys and the values that --set gives them; raises BadInput."""
-    return dict(parse_assignment(text) for text in args.overrides)
+    """Dotted keys and the values that --set gives them, files from where the user stands; raises BadInput."""
+    return {key: _from_here(key, value) for key, value in map(parse_assignment, args.overrides)}
+
+
+def _from_here(key: str, value: object) -> object:
+    """A value in which what names a file, but for a packaged scene, is a path from the root on."""
+    if isinstance(value, dict):
+        return {inner: _from_here(inner, one) for inner, one in value.items()}
+    name = key.rpartition(".")[2]
+    if name not in FILE_KEYS or not isinstance(value, str) or (name == "scene" and SCENES.is_name(value)):
+        return value
+    return str(Path(value).absolute())
 
 
 def read_scene(args: argparse.Namespace) -> tuple[Scene, Table]:

@@ -93,13 +93,19 @@ class Packaged:
         """
         path = Path(source)
         hidden = exists(path) and not (path.is_dir() and str(source) in self.names)
-        if not hidden and path.suffix != ".toml" and path.name == str(source):
+        if not hidden and self.is_name(str(source)):
             return self.path(str(source))
         if not hidden:
             reason = f"cannot be read: no such file{nearest(path.stem, self._near(path))}"
             accepted = f"accepted: a TOML file, or the name of a packaged {self.kind}"
             raise BadInput(Fault(str(source), "", f"{reason}; {accepted}"))
         return path
+
+    @staticmethod
+    def is_name(text: str) -> bool:
+        """Whether a text looks like a packaged name, and not like a path."""
+        path = Path(text)
+        return path.suffix != ".toml" and path.name == text
 
     def _near(self, path: Path) -> Mapping[str, str]:
         """What may be meant by a path that is none: the packaged names, and by their stems the TOML files beside it."""
