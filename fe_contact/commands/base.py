@@ -32,6 +32,7 @@ from lumped.schema.files import SCENES, overridden, parse_assignment, parsed
 if TYPE_CHECKING:
     from fe_contact.studies.finite_exponents import StrainedRow
 
+SOFTEST = 100.0  # physics: Pa, rho g L: a centimetre of water's density would sink into itself
 DONE, NOT_REACHED = 0, 3  # two of the exit codes of cli, which loads this file only when it is needed
 WIDE = 88  # look: of a help that no terminal bounds
 LONGEST = 80  # characters of what --set changed in a folder's name: file systems take 255 bytes with the scene's name
@@ -305,7 +306,17 @@ def report(
         complain(missed)
     if not result.model_sufficient:
         complain(f"the model is too small for the tolerance: {_left_out(result, asked)}")
+    if soft := _too_soft(result.indenter if isinstance(result, Indentation) else result.scene):
+        complain(soft)
     return DONE if result.converged else NOT_REACHED
+
+
+def _too_soft(body: Scene | Indenter) -> str:
+    """A doubt about the unit of a modulus that no solid has; empty where there is none."""
+    if body.material is None or body.material.young.glassy >= SOFTEST:
+        return ""
+    told = f"{body.name}: the modulus is at most {body.material.young.glassy:.3g} Pa, less than any solid's"
+    return f"{told}; are the values in Pa (9 GPa = 9e9)?"
 
 
 def _left_out(result: Result | Indentation, asked: Model) -> str:
