@@ -71,7 +71,10 @@ def test_a_person_reads_intervals(
     """The relaxation held at another time than the truth's: what is left says so, first of all in the scene written."""
     written = tmp_path / "found.toml"
     line = ["identify", str(curves[0]), "--scene", "polymer-sphere", "--set", "target.material.C1=1e6"]
-    assert main([*line, "--free", "target.material.E1", "--out", str(tmp_path / "out"), "--write", str(written)]) == 0
+    assert (
+        main([*line, "--free", "target.material.E1,touch", "--out", str(tmp_path / "out"), "--write", str(written)])
+        == 0
+    )
     said = capsys.readouterr()
     assert "with these values, which are not to be trusted: " in said.out
     first = written.read_text(encoding="utf-8").partition("\n")[0]

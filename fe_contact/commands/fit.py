@@ -179,7 +179,12 @@ MEMBER = base.Command(
         base.option("curve", type=Path, metavar="CURVE.csv", help="measured force: time_s,force_N"),
         base.option("--law", required=True, metavar="NAME", help="a lumped law (fe-contact laws), or all, ranked"),
         base.option("--scene", required=True, help="scene (file or packaged name) with mass, velocity, geometry"),
-        base.option("--free", metavar="a,b,...", help="default: stiffness and damping; also touch, s; others are held"),
+        base.option(
+            "--free",
+            metavar="a,b,...",
+            help="what is found, others being held; default: stiffness and damping; to find the touch, s, too: "
+            "k,xi,touch, and of all laws: touch",
+        ),
         base.option("--fix", default="", metavar="a=v,...", help="parameters held at a value"),
         base.option("--bounds", default="", metavar="a=low:high,...", help="bounds of free parameters"),
         base.option("--peak", action="store_true", help="least error at equal peak force, (26)"),

@@ -177,7 +177,9 @@ MEMBER = base.Command(
     (
         base.option("curves", nargs="+", metavar="CURVE.csv[:KEY=VALUE,...]", help="measured force, with its own keys"),
         base.option("--scene", required=True, help="scene (file or packaged name) whose values are the first guess"),
-        base.option("--free", required=True, metavar="KEY,...", help="keys to find, as target.material.E0"),
+        base.option(
+            "--free", required=True, metavar="KEY,...", help="keys to find, as target.material.E0, beside touch"
+        ),
         base.option("--each", action="store_true", help="every curve alone, too"),
         base.option("--corner", metavar="HZ", help="of the instrument's low pass, where no silence tells the noise's"),
         base.option(WRITE, type=Path, metavar="FILE.toml", help="write the scene with the values found"),
