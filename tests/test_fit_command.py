@@ -17,6 +17,7 @@ from fe_contact.studies import style
 from fe_contact.studies.fit_chart import plot_fit, plot_ranking
 from fe_contact.studies.identify_chart import plot_identified
 from lumped import History, Scene, fit, identify, laws, simulate
+from lumped.fit import Estimate
 from lumped.fit.ranking import RankedFit
 from lumped.result.curve_file import read_curve
 from lumped.result.score import Curve, normalized_error
@@ -55,6 +56,7 @@ def test_the_files_say_what_is_printed(
     assert main(command) == 0
     printed = json.loads(capsys.readouterr().out)
     assert printed == json.loads((where / "fit.json").read_text(encoding="utf-8"))
+    assert printed["level"] == 0.95
     assert {name: one["value"] for name, one in printed["parameters"].items()} == pytest.approx(TRUTH, rel=1e-5)
     with (where / "parameters.csv").open(encoding="utf-8", newline="") as file:
         rows = {row["parameter"]: row for row in csv.DictReader(file)}
@@ -71,6 +73,7 @@ def test_a_person_reads_intervals(body: Path, curve: Path, tmp_path: Path, capsy
     said = capsys.readouterr()
     lines = [line.split() for line in said.out.splitlines()]
     assert [line[0] for line in lines[1:4]] == ["k", "alpha", "xi"]
+    assert str(Estimate(1.5, 1.4, None, "N")) == "1.5 (1.4 to open, 95 %) N"
     assert float(lines[2][1]) == pytest.approx(1.5, rel=1e-5)
     assert lines[3][1:] == ["0.2", "held"]
     assert "correlated" in said.err

@@ -17,6 +17,7 @@ from fe_contact.studies import style
 from fe_contact.studies.style import prefixed
 from lumped.fit import Estimate, Fit
 from lumped.fit.ranking import RankedFit
+from lumped.fit.record import LEVEL
 from lumped.result.score import Curve
 
 PANELS = 3.1  # height of the two panels with what is between them, in
@@ -31,7 +32,8 @@ ROOM = 0.5  # of the peak, for what is left, to either side
 def plot_fit(curve: Curve, found: Fit, where: Path) -> tuple[Path, Path]:
     """Write ``fit.svg`` and ``fit.png`` into the folder ``where``; their paths."""
     lines = [f"{name} = {_shown(estimate)}" for name, estimate in found.parameters.items()]
-    lines.append(f"normalized error {found.error_in_words}{', peak held' if found.peak_held else ''}")
+    held = ", peak held" if found.peak_held else ""
+    lines.append(f"normalized error {found.error_in_words}{held}; intervals of {100.0 * LEVEL:g} %")
     title = f"{found.law}, fitted"
     with style.sheet(where, "fit", title, lines, PANELS, width=TITLE_WIDTH, above=0.34, size=style.COLUMN) as sheet:
         force, left = sheet.figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1.0))
