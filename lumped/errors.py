@@ -129,7 +129,11 @@ def shown(value: object) -> str:
         return "a number of thousands of digits"
 
 
-def nearest(name: str, accepted: Sequence[str]) -> str:
-    """`; did you mean radius?` when one accepted name resembles `name`, else an empty string."""
-    close = get_close_matches(name[:SHOWN_CHARACTERS], accepted, n=1, cutoff=0.5)
-    return f"; did you mean {close[0]}?" if close else ""
+def nearest(name: str, accepted: Sequence[str] | Mapping[str, str]) -> str:
+    """`; did you mean radius?` when one accepted name resembles `name`, else an empty string.
+
+    What a mapping's names are shown as are its values.
+    """
+    close = get_close_matches(name[:SHOWN_CHARACTERS], list(accepted), n=1, cutoff=0.5)
+    shown_as = accepted if isinstance(accepted, Mapping) else dict(zip(close, close, strict=True))
+    return f"; did you mean {shown_as[close[0]]}?" if close else ""

@@ -33,7 +33,7 @@ _steps: ContextVar[Counted] = ContextVar("steps", default=uncounted)
 
 @contextmanager
 def counting_steps(counted: Counted) -> Iterator[None]:
-    """Meanwhile every step that a law marches, or tries, is told to `counted`, however deep it lies."""
+    """Meanwhile every step that is marched, or tried, is told to `counted`, however deep it lies."""
     before = _steps.set(counted)
     try:
         yield
@@ -41,6 +41,6 @@ def counting_steps(counted: Counted) -> Iterator[None]:
         _steps.reset(before)
 
 
-def step_done() -> None:
-    """A law has marched a step, or tried one."""
-    _steps.get()(1.0)
+def step_done(parts: float = 1.0) -> None:
+    """A law, or a coarse run, has marched a step, or tried one."""
+    _steps.get()(parts)

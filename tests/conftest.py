@@ -12,10 +12,11 @@ from crowded import crowded
 from hypothesis import settings
 from matplotlib.figure import Figure
 from threadpoolctl import threadpool_limits
+from told import told_columns, untold
 
 from fe_contact.assembly.disk_cache import without_disk
 from fe_contact.cli import main
-from fe_contact.studies import style
+from fe_contact.studies import files, style
 from lumped import Result
 
 TENTH = 10
@@ -126,6 +127,21 @@ def charts_that_can_be_read(request: pytest.FixtureRequest) -> Iterator[None]:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(style, "save", looked_at)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def tables_that_are_told() -> Iterator[None]:
+    """No table of a study that a test writes, and the manual's page of tables names, has a column which it does not."""
+    written = files.write_csv
+
+    def looked_at(path: Path, header: Iterable[str], rows: Iterable[Iterable[object]]) -> None:
+        columns = list(header)
+        assert not (told_columns(path.name) and untold(path.name, columns)), (path.name, untold(path.name, columns))
+        written(path, columns, rows)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(files, "write_csv", looked_at)
         yield
 
 

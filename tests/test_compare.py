@@ -28,6 +28,7 @@ from lumped.result.result import Result
 from lumped.result.score import Curve as Measured
 from lumped.scene.scene import Scene
 from lumped.scene.tables import LawChoice
+from lumped.schema.csv_file import write_columns
 
 MATERIALS: dict[str, dict[str, Any]] = {
     "sls": {},
@@ -240,3 +241,24 @@ def test_an_unreadable_measurement_writes_nothing(tmp_path: Path, refused: Calla
     curve = tmp_path / "curve.csv"
     curve.write_text("time_s,push\n0,1\n1,2\n", encoding="utf-8")
     assert "force_N" in refused("compare", "polymer-sphere", "--measured", str(curve))[0]
+
+
+def test_the_clock_of_a_measured_curve_is_told_by_its_touch(
+    tmp_path: Path, empty: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A pre-trigger of a contact's length: refused, and with --touch judged as the same curve from touch on."""
+    scene, wait = Scene.load("polymer-sphere"), 0.0625
+    history = simulate(laws.get("ting").of(scene), scene).history
+    time = np.linspace(-0.02, 1.3 * history.time[-1], 800)
+    early, late = tmp_path / "early.csv", tmp_path / "late.csv"
+    for path, start in ((early, 0.0), (late, wait)):
+        write_columns(path, ("time_s", "force_N"), (time + start, history.force_at(time)))
+    command = ["compare", "polymer-sphere", "--laws", "ting", "--tolerance", "1e-2", "--json", "--measured"]
+    assert main([*command, str(late)]) == 2
+    assert "compare --touch" in capsys.readouterr().err
+    assert main([*command, str(early)]) == 0
+    assert main([*command, str(late), "--touch", f"{wait}"]) == 0
+    first, again = map(json.loads, capsys.readouterr().out.splitlines())
+    assert first["verdict"] == again["verdict"]
+    assert main(["compare", "polymer-sphere", "--touch", "0.1"]) == 2
+    assert "--touch: '0.1': accepted a time on the clock of --measured" in capsys.readouterr().err

@@ -9,12 +9,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from fe_contact.cli import main
-from fe_contact.studies.fit_chart import plot_fit
-from lumped import History, Scene, fit, laws, simulate
+from fe_contact.commands.fit import EVERY
+from fe_contact.studies import style
+from fe_contact.studies.fit_chart import plot_fit, plot_ranking
+from fe_contact.studies.identify_chart import plot_identified
+from lumped import History, Scene, fit, identify, laws, simulate
+from lumped.fit import Estimate
+from lumped.fit.ranking import RankedFit
 from lumped.result.curve_file import read_curve
-from lumped.result.score import normalized_error
+from lumped.result.score import Curve, normalized_error
 
 BODY = "[striker]\nmass = 0.001\nvelocity = 1.0\n"
 LAW = '[law]\nname = "jankowski"\nk = 1e7\nxi = 0.2\n'
@@ -50,6 +56,7 @@ def test_the_files_say_what_is_printed(
     assert main(command) == 0
     printed = json.loads(capsys.readouterr().out)
     assert printed == json.loads((where / "fit.json").read_text(encoding="utf-8"))
+    assert printed["level"] == 0.95
     assert {name: one["value"] for name, one in printed["parameters"].items()} == pytest.approx(TRUTH, rel=1e-5)
     with (where / "parameters.csv").open(encoding="utf-8", newline="") as file:
         rows = {row["parameter"]: row for row in csv.DictReader(file)}
@@ -66,6 +73,7 @@ def test_a_person_reads_intervals(body: Path, curve: Path, tmp_path: Path, capsy
     said = capsys.readouterr()
     lines = [line.split() for line in said.out.splitlines()]
     assert [line[0] for line in lines[1:4]] == ["k", "alpha", "xi"]
+    assert str(Estimate(1.5, 1.4, None, "N")) == "1.5 (1.4 to open, 95 %) N"
     assert float(lines[2][1]) == pytest.approx(1.5, rel=1e-5)
     assert lines[3][1:] == ["0.2", "held"]
     assert "correlated" in said.err
@@ -100,10 +108,35 @@ def test_the_chart_is_reproducible(body: Path, curve: Path, tmp_path: Path) -> N
     assert [path.read_bytes() for path in first] == [path.read_bytes() for path in again]
 
 
+def test_what_is_left_has_one_sign_in_every_chart(curve: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The curve less the law: of one law, of all, and of an identification; the axis says so."""
+    figures = dict[str, Figure]()
+    monkeypatch.setattr(style, "save", lambda figure, where, name: figures.setdefault(name, figure))
+    measured, found = read_curve(curve), fit(read_curve(curve), "kelvin", Scene(None, mass=0.001, velocity=1.0))
+    left = measured.force - found.history.force_at(measured.time)
+    plot_fit(measured, found, tmp_path)
+    plot_ranking([RankedFit("kelvin", found, 0.0)], measured, tmp_path)
+    sphere = Scene.load("polymer-sphere", {"target.material.C1": 1e4})
+    drop, time = simulate(laws.get("ting").of(sphere), sphere).history, np.linspace(-0.01, 0.03, 200)
+    known = identify({"drop": Curve(time, drop.force_at(time))}, "polymer-sphere", ["E1"])
+    plot_identified(known, tmp_path)
+    drawn = {
+        "fit": (figures["fit"].axes[1].lines[-1], left),
+        "fits": (figures["fits"].axes[0].lines[1], left),
+        "identified": (figures["identified"].axes[1].lines[-1], known.curves[0].force - known.curves[0].fitted),
+    }
+    for name, (line, expected) in drawn.items():
+        assert np.corrcoef(np.asarray(line.get_ydata(), dtype=float), expected)[0, 1] == pytest.approx(1.0), name
+    assert all(figures[name].axes[1].get_ylabel() == "curve − law, %" for name in ("fit", "identified"))
+    assert any("the curve less the law" in text.get_text() for text in figures["fits"].texts)
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
         (["--law", "jankowsky"], "did you mean jankowski?"),
+        (["--law", "jankovski", "--opensees"], "--law: 'jankovski' is not known"),
+        (["--law", "jankovski", "--opensees"], "did you mean jankowski?"),
         (["--law", "tsuji", "--opensees"], "tsuji has no OpenSees material"),
         (["--law", "jankowski", "--opensees", "apdl"], "--opensees: 'apdl': accepted tcl, python"),
         (["--law", "jankowski", "--free", "k,xo"], "xo: unknown parameter"),
@@ -163,6 +196,19 @@ def test_all_laws_are_ranked_the_true_one_first(
     assert len(rows) == len(laws.available())
     names = {f"fits.{kind}" for kind in ("json", "csv", "svg", "png")} | {"forces.csv"}
     assert {path.name for path in where.iterdir()} == names
+
+
+@pytest.mark.tenth
+def test_one_law_and_the_ranking_leave_each_other_s_files(curve: Path, body: Path, empty: Path) -> None:
+    """Told by default into two folders: a folder holds one run."""
+    for law in ("jankowski", EVERY, "jankowski"):
+        assert main(["fit", str(curve), "--law", law, "--scene", str(body), "--quiet"]) == 0
+    assert {path.name for path in empty.glob("fe-contact-out/*/*.csv")} == {
+        "fit.csv",
+        "parameters.csv",
+        "fits.csv",
+        "forces.csv",
+    }
 
 
 def test_all_laws_have_their_own_parameters(curve: Path, body: Path, refused: Callable[..., list[str]]) -> None:

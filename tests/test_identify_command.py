@@ -68,10 +68,17 @@ def test_two_curves_tell_the_polymer(
 def test_a_person_reads_intervals(
     curves: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The relaxation held at another time than the truth's: what is left says so."""
+    """The relaxation held at another time than the truth's: what is left says so, first of all in the scene written."""
+    written = tmp_path / "found.toml"
     line = ["identify", str(curves[0]), "--scene", "polymer-sphere", "--set", "target.material.C1=1e6"]
-    assert main([*line, "--free", "target.material.E1", "--out", str(tmp_path / "out")]) == 0
+    assert (
+        main([*line, "--free", "target.material.E1,touch", "--out", str(tmp_path / "out"), "--write", str(written)])
+        == 0
+    )
     said = capsys.readouterr()
+    assert "with these values, which are not to be trusted: " in said.out
+    first = written.read_text(encoding="utf-8").partition("\n")[0]
+    assert first.startswith("# not to be trusted: the law does not explain the curves (Ljung-Box, p = ")
     assert "target.material.E1 " in said.out
     assert "90 %" in said.out
     assert "the law does not explain the curves" in said.out

@@ -48,6 +48,15 @@ def write(tmp_path: Path) -> Any:
     return build
 
 
+def test_no_force_of_an_indentation_is_called_a_peak(empty: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """What yields, slowly: how good the model is, and what it leaves out, are of the force that was asked for."""
+    yields = ["--set", "target.material.yield_strength=4e8", "--method", "hertz"]
+    assert exit_code("steel-ball", "--depths", "1e-6,5e-6", *yields) == 0
+    said = capsys.readouterr()
+    assert " % of the force, for plasticity" in said.out
+    assert "plasticity is left out; it may change the force by " in said.err
+
+
 def exit_code(*arguments: str) -> int:
     try:
         return main(["indent", *arguments])

@@ -10,7 +10,7 @@ import pytest
 
 from fe_contact.cli import main
 from fe_contact.reference import plan
-from fe_contact.studies.larger_models import measure, sufficient
+from fe_contact.studies.larger_models import MeasuredEffect, measure, sufficient
 from lumped import Scene, laws, simulate
 
 BULK = {"target.material.constant": "bulk"}
@@ -63,6 +63,9 @@ def test_a_body_that_yields_is_taken_in_where_that_is_built(name: str) -> None:
     strength = 1e9 if name == "steel-ball" else 1e4
     found = sufficient(own.changed({"target.material.yield_strength": strength}), {"tolerance": 0.02})
     assert found.scene.model.plasticity is (name == "steel-ball")
+    for entry in found.taken:
+        said = str(found).partition(f"{entry.effect} ({entry.setting}), estimated ")[2]
+        assert entry.line(0.02).partition("): ")[2].startswith(f"{said.partition(' %')[0]} %, above the tolerance")
     if not found.scene.model.plasticity:
         assert "no viscosity with model.plasticity in this version; accepted: elastic" in found.left["plasticity"]
 
@@ -78,6 +81,13 @@ def test_run_says_which_effects_it_takes_in(tmp_path: Path, capsys: pytest.Captu
     )
     results = [json.loads((tmp_path / name / "result.json").read_text()) for name in ("given", "larger")]
     assert [result["model_sufficient"] for result in results] == [False, True]
+
+
+def test_what_is_measured_is_said_in_the_unit_of_the_ledger() -> None:
+    yields = MeasuredEffect("plasticity", "model.plasticity=true", 0.28, -0.24, 0.02)
+    assert str(yields) == "plasticity (model.plasticity=true): estimate 28 % | measured -24 % +- 2 %"
+    strained = MeasuredEffect("finite strain", "", None, 0.01, 0.004, spread=(-0.035, 0.0038))
+    assert str(strained).startswith("finite strain: estimate -3.5 % to +0.38 % | measured +1 % +- 0.4 %, by ")
 
 
 @pytest.mark.tenth

@@ -12,11 +12,15 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+from told import told_columns, untold
 
 from fe_contact.cli import main, parser
 from fe_contact.commands import COMMANDS
 from fe_contact.manual.schemas import RESULT
 from fe_contact.manual.site import HERE, MENU
+from fe_contact.studies.stability.base import studies
+from lumped import Scene, laws
+from lumped.fit import opensees
 from lumped.paper.claims import misprints
 from lumped.shapes import SHAPES
 
@@ -133,6 +137,27 @@ def test_what_is_written_of_the_code_names_all_of_it(site: Path) -> None:
     assert errata.count("<tr>") == len(misprints()) + 1
 
 
+def test_the_page_says_which_laws_opensees_has_and_as_what() -> None:
+    """Row by row, each law's material; of the laws that remember there is none to name."""
+    scene, told = Scene.load("steel-ball-sls"), dict[str, str]()
+    page = (HERE / "experiment.md").read_text(encoding="utf-8")
+    for row in page.partition("| `--law` | material |")[2].splitlines()[2:]:
+        names, material = (re.findall(r"`(\w+)`", cell) for cell in row.strip("|").split("|"))
+        told |= dict.fromkeys(names, "".join(material))
+    own = {law.name: opensees.material(laws.get(law.name).of(scene), scene).name for law in opensees.LAWS}
+    assert told == own | {law.name: "" for law in opensees.REMEMBERING}
+
+
+def test_the_tables_of_studies_are_told() -> None:
+    """Of every stability study the settings and the measures; of others what any test writes, see conftest.py."""
+    for name, study in studies().items():
+        columns = [*study.cases(True)[0], *study.chart.measures, "failure"]
+        assert not untold(f"{name}.csv", columns), name
+    tables = ("table1", "table1-datum", "table1-bonded", "exponents", "finite_spheres", "exponents_from_impacts")
+    more = ("tradeoff", "scenes", "checks", "correspondence", "elements", "larger", "formulas")
+    assert all(told_columns(f"{name}.csv") for name in (*tables, *more))
+
+
 def test_every_example_is_one() -> None:
     """Its options and keys are there: a parser takes every command, a file has the tables of its kind."""
     found = [*examples()]
@@ -159,19 +184,8 @@ def test_what_the_manual_tells_to_do_can_be_done(page: str, empty: Path) -> None
             done(example)
     for table in empty.glob("fe-contact-out/*/*.csv"):
         header = table.read_text(encoding="utf-8").partition("\n")[0].split(",")
-        told = told_columns(table.name)
-        assert all(any(one.fullmatch(column) for one in told) for column in header), (table.name, header)
-
-
-def told_columns(table: str) -> list[re.Pattern[str]]:
-    """The columns that the page of tables names in the section of this one; capitals stand for a user's own names."""
-
-    def patterns(words: str, text: str) -> list[re.Pattern[str]]:
-        return [re.compile(re.sub("LAW|STOREY|GAP", r"\\w+", word)) for word in re.findall(f"`({words})`", text)]
-
-    sections = (HERE / "tables.md").read_text(encoding="utf-8").split("\n## ")
-    of_it = [text for text in sections if any(one.fullmatch(table) for one in patterns(r"[\w-]+\.csv", text))]
-    return [one for text in of_it for one in patterns(r"\w+", text)]
+        assert told_columns(table.name), table.name
+        assert not untold(table.name, header), table.name
 
 
 def done(example: Example) -> None:

@@ -7,6 +7,7 @@ import json
 import re
 import tomllib
 from collections.abc import Callable
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -15,18 +16,24 @@ import pytest
 
 import fe_contact
 from fe_contact.cli import main
+from fe_contact.commands.base import FILE_KEYS
 from fe_contact.studies.pound.calibration import calibrated_study
 from fe_contact.studies.pound.chart import plot_study
 from lumped import Scene, laws, simulate
 from lumped.errors import BadInput
 from lumped.laws._power_law import PowerLaw
+from lumped.materials.networks import NETWORKS
 from lumped.pounding import march
 from lumped.pounding import simulate as simulate_frames
 from lumped.pounding import study as studies
-from lumped.pounding.case_file import CASES, GRAVITY, PoundingReader, load, read
+from lumped.pounding.case_file import CASES, GRAVITY, GROUNDS, SCENE_KEY, PoundingReader, load, read
 from lumped.pounding.ground import GroundRecord
 from lumped.pounding.study import NO_CONTACT, study
+from lumped.scene.tables import LAWS
 from lumped.schema.csv_file import read_columns
+from lumped.schema.keys import File
+from lumped.shapes import SHAPES
+from lumped.targets import TARGETS
 
 SHORT = ["--set", "motion.end_time=2.0", "--quiet"]
 CASE: dict[str, Any] = {
@@ -338,6 +345,18 @@ def test_all_faults_are_told_at_once_and_nothing_is_written(refused: Callable[..
 def test_a_refused_command_writes_nothing(arguments: list[str], named: str, refused: Callable[..., list[str]]) -> None:
     (fault,) = refused("pound", *arguments)
     assert named in fault
+
+
+def test_a_file_of_the_command_line_lies_where_the_user_stands(empty: Path) -> None:
+    """And not beside the packaged case; of a key within a table too, and of the ground's record."""
+    (empty / "floors.toml").write_text(FLOORS, encoding="utf-8")
+    (empty / "quake.csv").write_text("time_s,acceleration_g\n0,0\n0.5,0.1\n1,0\n", encoding="utf-8")
+    own = ["--set", "law={name='correspondence',velocity=0.3,scene='floors.toml'}"]
+    shaken = ["--set", "ground={kind='record'}", "--set", "ground.file=quake.csv"]
+    assert main(["pound", "two-frames", *own, *shaken, *SHORT]) == 0
+    every = [one.sets for folder in (SHAPES, TARGETS, NETWORKS, LAWS) for one in folder.members.values()]
+    keys = [*GROUNDS.values(), {"scene": SCENE_KEY}, *chain.from_iterable(every)]
+    assert {*FILE_KEYS} == {name for one in keys for name, key in one.items() if isinstance(key.kind, File)}
 
 
 def test_the_variant_without_contact_is_named() -> None:

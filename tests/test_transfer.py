@@ -332,6 +332,13 @@ def test_the_chart_is_reproducible(tmp_path: Path) -> None:
     assert [path.read_bytes() for path in first] == [path.read_bytes() for path in again]
 
 
+def test_the_chart_says_where_its_axes_are_linear_and_what_its_shades_mean(tmp_path: Path) -> None:
+    study = fe_contact.transfer(body("jankowski", k=1e7, xi=0.2), ("jankowski", "kelvin"), over={VELOCITY: (2.0,)})
+    text = plot_transfer(study, tmp_path)[0].read_text(encoding="utf-8")
+    assert text.count("(linear to 1)") == len(QUANTITIES)
+    assert [text.count(f">{level} %<") for level in (10, 5, 1)] == [1, 1, 1]
+
+
 # what is published
 
 

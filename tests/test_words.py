@@ -51,6 +51,17 @@ def test_what_a_law_leaves_out_of_the_scene_is_not_asked_of_the_scene(
     assert capsys.readouterr().err.endswith("; to include it, as the scene asks: --method fe\n")
 
 
+@pytest.mark.parametrize(("modulus", "said"), [("9", True), ("9e3", False)])
+def test_a_modulus_that_was_meant_in_gigapascal_is_doubted(
+    modulus: str, said: bool, empty: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of a run and of an indentation; a gel is none."""
+    own = ["steel-ball", "--set", f"target.material.E={modulus}", "--set", "striker.velocity=1e-5", "--method", "hertz"]
+    for command in (["run", *own], ["indent", *own, "--depths", "1e-6"]):
+        assert main(command) == 0
+        assert ("are the values in Pa (9 GPa = 9e9)?" in capsys.readouterr().err) == said
+
+
 @pytest.mark.parametrize("effect", ["gravity", "target inertia", "constant nu against constant bulk modulus"])
 def test_the_option_that_is_named_selects_the_larger_model(effect: str) -> None:
     """As it stands in the sentence it is set, and then the effect is no longer left out."""

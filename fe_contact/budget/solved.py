@@ -14,9 +14,10 @@ from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import ImpactWay, refine
 from fe_contact.budget.several import Row, Several
 from fe_contact.march.impacts import UNFOLLOWED
-from fe_contact.progress import Progress
+from fe_contact.progress import Count, Progress
 from fe_contact.settings import Given, Numerics
 from lumped.numbers import Clock
+from lumped.progress import counting_steps
 from lumped.result.result import UNITS, IndentationLeft, Result, largest_bar, provenance, unmet
 from lumped.scene.scene import Scene
 
@@ -68,8 +69,8 @@ def solved(
 ) -> SolvedBy[AnyAnswer]:
     """Plan, certify, refine until the bars meet the tolerance or nothing is left to refine. Raises NotReached."""
     clock = Clock()
-    progress("what to expect of the contact")
-    chosen = plan(scene, given)
+    with counting_steps(Count.of(progress, "what to expect of the contact", 0.0)):
+        chosen = plan(scene, given)
     way = way_of(scene, chosen, progress)
     found, refused = refine(way, chosen.numerics)
     chosen = replace(chosen, ledger=way.ledger(found))

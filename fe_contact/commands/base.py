@@ -32,6 +32,7 @@ from lumped.schema.files import SCENES, overridden, parse_assignment, parsed
 if TYPE_CHECKING:
     from fe_contact.studies.finite_exponents import StrainedRow
 
+SOFTEST = 100.0  # physics: Pa, rho g L: a centimetre of water's density would sink into itself
 DONE, NOT_REACHED = 0, 3  # two of the exit codes of cli, which loads this file only when it is needed
 WIDE = 88  # look: of a help that no terminal bounds
 LONGEST = 80  # characters of what --set changed in a folder's name: file systems take 255 bytes with the scene's name
@@ -46,6 +47,7 @@ GROUPS = {  # where a command stands in the help, and what to try first there
 }
 
 
+FILE_KEYS = ("file", "scene")  # ends of the keys that hold the name of a file
 option = partial(methodcaller, "add_argument")  # with argparse's names and keywords: an option, which a parser takes
 SETTINGS = "set a key of the scene file, as striker.velocity=0.1"
 
@@ -85,7 +87,7 @@ def override(says: str = SETTINGS) -> methodcaller:
 JSON = option("--json", action="store_true", help="machine-readable result on stdout")
 NO_CACHE = option("--no-cache", action="store_true", help="mesh and condense anew, whatever is known on disk")
 OUTPUT = (
-    option("--out", type=Path, metavar="DIR", help="folder for the results"),
+    option("--out", type=Path, metavar="DIR", help="folder for the results, without those of a former run"),
     JSON,
     option("--quiet", action="store_true", help="no progress on stderr"),
     option("--log", metavar="FILE", help="write progress into a file, line by line"),
@@ -112,8 +114,18 @@ def quick(says: str) -> methodcaller:
 
 
 def overrides_of(args: argparse.Namespace) -> dict[str, object]:
-    """Dotted keys and the values that --set gives them; raises BadInput."""
-    return dict(parse_assignment(text) for text in args.overrides)
+    """Dotted keys and the values that --set gives them, files from where the user stands; raises BadInput."""
+    return {key: _from_here(key, value) for key, value in map(parse_assignment, args.overrides)}
+
+
+def _from_here(key: str, value: object) -> object:
+    """A value in which what names a file, but for a packaged scene, is a path from the root on."""
+    if isinstance(value, dict):
+        return {inner: _from_here(inner, one) for inner, one in value.items()}
+    name = key.rpartition(".")[2]
+    if name not in FILE_KEYS or not isinstance(value, str) or (name == "scene" and SCENES.is_name(value)):
+        return value
+    return str(Path(value).absolute())
 
 
 def read_scene(args: argparse.Namespace) -> tuple[Scene, Table]:
@@ -298,15 +310,26 @@ def report(
         complain(missed)
     if not result.model_sufficient:
         complain(f"the model is too small for the tolerance: {_left_out(result, asked)}")
+    if soft := _too_soft(result.indenter if isinstance(result, Indentation) else result.scene):
+        complain(soft)
     return DONE if result.converged else NOT_REACHED
+
+
+def _too_soft(body: Scene | Indenter) -> str:
+    """A doubt about the unit of a modulus that no solid has; empty where there is none."""
+    if body.material is None or body.material.young.glassy >= SOFTEST:
+        return ""
+    told = f"{body.name}: the modulus is at most {body.material.young.glassy:.3g} Pa, less than any solid's"
+    return f"{told}; are the values in Pa (9 GPa = 9e9)?"
 
 
 def _left_out(result: Result | Indentation, asked: Model) -> str:
     """The largest effect left out, and its cure: another method, where a law leaves out what the scene asks for."""
     entry = worst(result.model_ledger)
+    told = entry.told_of(result.ruled_force)
     if entry.key.startswith("model.") and getattr(asked, entry.key.removeprefix("model.")) == entry.value:
-        return f"{entry.sentence.removesuffix(entry.cure)}to include it, as the scene asks: --method fe"
-    return entry.sentence
+        return f"{told.removesuffix(entry.cure)}to include it, as the scene asks: --method fe"
+    return told
 
 
 def complain(message: str) -> None:

@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import argparse
+import math
+from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
-from lumped.errors import BadInput, Fault
+from lumped.errors import BadInput, Fault, shown
 from lumped.result.folder import publish
+
+if TYPE_CHECKING:
+    from lumped.result.score import Curve
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -15,12 +21,11 @@ def execute(args: argparse.Namespace) -> int:
     from fe_contact.methods import settings
     from fe_contact.studies.compare.chart import plot_comparison
     from fe_contact.studies.compare.study import compared, comparison_content, write_comparison
-    from lumped.result.curve_file import read_curve
     from lumped.result.gate import check_curve
 
     scene, table = base.read_scene(args)
     given, names = settings(table, None, scene.source), law_names(args.laws)
-    measured = None if args.measured is None else read_curve(args.measured)
+    measured = _measured(args)
     remarks = () if measured is None else check_curve(measured, scene, str(args.measured))
     run = base.StudyRun.of(args, "compare", scene.name)
     comparison = compared(scene, given, names, measured, run.progress)
@@ -37,9 +42,22 @@ def execute(args: argparse.Namespace) -> int:
     return base.report(args, comparison.reference, content, content["verdict"], run.where, title, scene.model)
 
 
+def _measured(args: argparse.Namespace) -> Curve | None:
+    """The measured curve, its times from the touch on; None where none is given. Raises BadInput."""
+    from lumped.result.curve_file import read_curve
+
+    touch = base.number(args.touch, "--touch")
+    if not math.isfinite(touch) or (touch and args.measured is None):
+        raise BadInput(Fault("--touch", "", f"{shown(args.touch)}: accepted a time on the clock of --measured, s"))
+    if args.measured is None:
+        return None
+    curve = read_curve(args.measured)
+    return replace(curve, time=curve.time - touch)
+
+
 def law_names(text: str | None) -> tuple[str, ...]:
     """Checked names of the laws asked for, each once, or of all; raises BadInput with every unknown one."""
-    from lumped.errors import nearest, shown
+    from lumped.errors import nearest
     from lumped.laws import available
 
     if text is None:
@@ -62,6 +80,7 @@ MEMBER = base.Command(
         *base.OUTPUT,
         base.option("--laws", metavar="a,b,...", help="lumped laws; default: all that the scene has an answer of"),
         base.option("--measured", type=Path, metavar="CURVE.csv", help="measured force: time_s,force_N"),
+        base.option("--touch", default="0", metavar="T", help="when the bodies touch in that, s; fit or identify tell"),
     ),
     execute,
     example="fe-contact compare polymer-sphere --laws ting,hertz,kelvin",

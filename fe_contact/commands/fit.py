@@ -46,7 +46,7 @@ class FitQuestion:
         scene, curve = base.read_scene_for_fit(args), read_curve(args.curve)
         free = None if args.free is None else tuple(name.strip() for name in args.free.split(","))
         fixed = {name: base.number(value, "--fix") for name, value in _pairs(args.fix, "--fix")}
-        run = base.StudyRun.of(args, "fit", scene.name)
+        run = base.StudyRun.of(args, "fit-all" if args.law == EVERY else "fit", scene.name)
         remarks = check_curve(curve, scene, str(args.curve), TOUCH not in {*(free or ()), *fixed})
         return cls(run, scene, curve, free, fixed, remarks)
 
@@ -137,7 +137,8 @@ def _check_opensees(args: argparse.Namespace) -> None:
 
     if args.opensees is None:
         return
-    opensees.check(args.law)
+    with addressed(str(args.curve), OPTIONS):
+        opensees.check(args.law)
     if args.opensees not in opensees.LANGUAGES:
         reason = f"{shown(args.opensees)}: accepted {', '.join(opensees.LANGUAGES)}"
         raise BadInput(Fault("--opensees", "", reason))
@@ -178,7 +179,12 @@ MEMBER = base.Command(
         base.option("curve", type=Path, metavar="CURVE.csv", help="measured force: time_s,force_N"),
         base.option("--law", required=True, metavar="NAME", help="a lumped law (fe-contact laws), or all, ranked"),
         base.option("--scene", required=True, help="scene (file or packaged name) with mass, velocity, geometry"),
-        base.option("--free", metavar="a,b,...", help="default: stiffness and damping; also touch, s; others are held"),
+        base.option(
+            "--free",
+            metavar="a,b,...",
+            help="what is found, others being held; default: stiffness and damping; to find the touch, s, too: "
+            "k,xi,touch, and of all laws: touch",
+        ),
         base.option("--fix", default="", metavar="a=v,...", help="parameters held at a value"),
         base.option("--bounds", default="", metavar="a=low:high,...", help="bounds of free parameters"),
         base.option("--peak", action="store_true", help="least error at equal peak force, (26)"),

@@ -65,7 +65,8 @@ def execute(args: argparse.Namespace) -> int:
     lines = [*summary(found), f"written to {where}"]
     if args.write is not None:
         _write_scene(args.write, found)
-        lines.append(f"the scene with these values: {args.write}")
+        trusted = "" if found.adequate else ", which are not to be trusted"
+        lines.append(f"the scene with these values{trusted}: {args.write}")
     base.say(args, content, lines, f"{name}: identified from {len(curves)} curve{'s' if len(curves) > 1 else ''}")
     for warning in (*warnings, *found.warnings):
         base.complain(warning)
@@ -163,7 +164,8 @@ def _check_written(path: Path | None) -> None:
 
 def _write_scene(path: Path, found: Identified) -> None:
     """The scene file with the values found, called as the file is, and what speaks against them. Raises BadInput."""
-    remarks = "".join(f"# {one}\n" for one in found.warnings)
+    verdict = () if found.adequate else (f"not to be trusted: {found.verdict}",)
+    remarks = "".join(f"# {one}\n" for one in (*verdict, *found.warnings))
     try:
         path.write_text(remarks + toml_text({**found.table, "name": path.stem}), encoding="utf-8")
     except OSError as failure:
@@ -175,7 +177,9 @@ MEMBER = base.Command(
     (
         base.option("curves", nargs="+", metavar="CURVE.csv[:KEY=VALUE,...]", help="measured force, with its own keys"),
         base.option("--scene", required=True, help="scene (file or packaged name) whose values are the first guess"),
-        base.option("--free", required=True, metavar="KEY,...", help="keys to find, as target.material.E0"),
+        base.option(
+            "--free", required=True, metavar="KEY,...", help="keys to find, as target.material.E0, beside touch"
+        ),
         base.option("--each", action="store_true", help="every curve alone, too"),
         base.option("--corner", metavar="HZ", help="of the instrument's low pass, where no silence tells the noise's"),
         base.option(WRITE, type=Path, metavar="FILE.toml", help="write the scene with the values found"),

@@ -8,8 +8,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
+from fe_contact.progress import Count
 from fe_contact.settings import KEYS, SCALES
 from lumped.errors import FeContactError, NotReached
+from lumped.progress import counting_steps
 from lumped.result.result import LedgerEntry, good_to
 from lumped.scene.scene import Scene
 from lumped.schema import Table
@@ -40,7 +42,8 @@ def execute(args: argparse.Namespace) -> int:
         nothing: Table = {"numerics": None, "model_ledger": [], "cost": None, "refused": None}
         base.say(args, methods | nothing, lines, title)
         return base.DONE
-    chosen = plan(scene, given)
+    with counting_steps(Count.of(progress, "what to expect of the contact", 0.0)):
+        chosen = plan(scene, given)
     takes, refused = _takes(scene, chosen, given)
     measured = _measured(args, scene, given)
     ledger = [entry.to_json(float(chosen.numerics.tolerance)) for entry in chosen.ledger]
@@ -87,7 +90,7 @@ def _measured_lines(measured: Sequence[MeasuredEffect], ledger: Sequence[LedgerE
     most = {one.effect: abs(one.change) + one.error for one in measured if one.change is not None and one.error}
     known = [replace(one, estimate=most.get(one.effect, one.estimate)) if one.spread is None else one for one in ledger]
     found = ["measured, as a change of the peak force:", *(f"  {one}" for one in measured)]
-    return [*found, f"by what was measured, {good_to(known)}"]
+    return [*found, f"by what was measured, bars added, {good_to(known)}"]
 
 
 def _takes(scene: Scene, chosen: Plan, given: Table) -> tuple[Cost | None, FeContactError | None]:

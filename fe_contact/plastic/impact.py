@@ -40,6 +40,7 @@ from fe_contact.progress import Progress, silent
 from fe_contact.settings import Given, Numerics, check_kind, tolerance_of
 from fe_contact.steppers.steps import March, Strike, Work
 from lumped.errors import BadInput, Fault
+from lumped.progress import step_done
 from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.result import IndentationLeft, LedgerEntry, Result, meets
 from lumped.scene.scene import Scene
@@ -267,7 +268,7 @@ def pilot(scene: Scene) -> Pilot:
     energy = 0.5 * scene.reduced_mass * scene.velocity**2
     deepest = _at_most(scene, energy)
     course = Course.of(scene, deepest, deepest).starting_at(PILOT_FIRST * deepest)
-    loading = PlasticLoading.of(course, settings(PILOT, course), most=MOST_PILOT)
+    loading = PlasticLoading.of(course, settings(PILOT, course), most=MOST_PILOT, counted=step_done)
     loading.to(BEYOND * deepest)
     power = released_power(course)
     found = Rebound(Answered.of(loading), scene.reduced_mass, energy, power, course.power)

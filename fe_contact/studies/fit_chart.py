@@ -17,6 +17,7 @@ from fe_contact.studies import style
 from fe_contact.studies.style import prefixed
 from lumped.fit import Estimate, Fit
 from lumped.fit.ranking import RankedFit
+from lumped.fit.record import LEVEL
 from lumped.result.score import Curve
 
 PANELS = 3.1  # height of the two panels with what is between them, in
@@ -31,7 +32,8 @@ ROOM = 0.5  # of the peak, for what is left, to either side
 def plot_fit(curve: Curve, found: Fit, where: Path) -> tuple[Path, Path]:
     """Write ``fit.svg`` and ``fit.png`` into the folder ``where``; their paths."""
     lines = [f"{name} = {_shown(estimate)}" for name, estimate in found.parameters.items()]
-    lines.append(f"normalized error {found.error_in_words}{', peak held' if found.peak_held else ''}")
+    held = ", peak held" if found.peak_held else ""
+    lines.append(f"normalized error {found.error_in_words}{held}; intervals of {100.0 * LEVEL:g} %")
     title = f"{found.law}, fitted"
     with style.sheet(where, "fit", title, lines, PANELS, width=TITLE_WIDTH, above=0.34, size=style.COLUMN) as sheet:
         force, left = sheet.figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1.0))
@@ -68,16 +70,16 @@ def _force(axes: Axes, curve: Curve, found: Fit) -> None:
 
 
 def _left(axes: Axes, curve: Curve, found: Fit) -> None:
-    """Fitted minus measured, in shares of the peak."""
+    """The curve less the law, in shares of the peak."""
     span = max(float(curve.time[-1]), float(found.history.time[-1]))
     second, unit = prefixed(float(curve.time[-1]), "s")
-    rest = 100.0 * (found.history.force_at(curve.time) - curve.force) / curve.force.max()
+    rest = 100.0 * (curve.force - found.history.force_at(curve.time)) / curve.force.max()
     axes.axhline(0.0, color="#4d4d4d", linewidth=0.5)
     axes.plot(second * curve.time, rest, color=style.law_colour(found.law), linewidth=0.8)
     largest = float(np.abs(rest).max()) or 1.0
-    axes.set(xlabel=f"time, {unit}", ylabel="% of the peak", ylim=(-1.15 * largest, 1.15 * largest))
+    axes.set(xlabel=f"time, {unit}", ylabel="curve − law, %", ylim=(-1.15 * largest, 1.15 * largest))
     axes.set_xlim(second * min(float(curve.time[0]), 0.0), 1.01 * second * span)
-    style.label(axes, "b", "fitted minus measured")
+    style.label(axes, "b", "what is left, over the peak")
 
 
 def plot_ranking(ranked: Sequence[RankedFit], curve: Curve, where: Path) -> tuple[Path, Path]:
@@ -85,7 +87,7 @@ def plot_ranking(ranked: Sequence[RankedFit], curve: Curve, where: Path) -> tupl
     shown = [one for one in ranked if one.fit is not None]
     rows = -(-len(shown) // COLUMNS)
     left_out = ", ".join(one.law for one in ranked if one.fit is None)
-    lines = ["grey: the curve; red: the law; blue: what is left, enlarged as told. AICc over that of the best law"]
+    lines = ["grey: curve; red: law; blue: the curve less the law, enlarged as told. AICc over that of the best law"]
     lines += [f"without a fit: {left_out}"] if left_out else []
     size = rows * HEIGHT
     with style.sheet(where, "fits", "every law, fitted", lines, size, width=WIDE_TITLE, above=0.34) as sheet:

@@ -73,7 +73,7 @@ def _force(axes: Axes, curve: FittedCurve, law: str, letter: str) -> None:
 
 
 def _left(axes: Axes, curve: FittedCurve) -> None:
-    """Measured minus fitted, in shares of the peak, over a band of two deviations of the noise, and the law's own."""
+    """The curve less the law, in shares of the peak, over a band of two deviations of the noise, and the law's own."""
     second, unit = prefixed(float(np.ptp(curve.time)), "s")
     band = 100.0 * BAND * curve.deviation / curve.peak
     axes.axhspan(-band, band, color="#e6e6e6", linewidth=0.0)
@@ -82,4 +82,4 @@ def _left(axes: Axes, curve: FittedCurve) -> None:
         axes.fill_between(second * (curve.time - curve.touch), *law, **LAW)
     left = 100.0 * (curve.force - curve.fitted) / curve.peak
     axes.plot(second * (curve.time - curve.touch), left, color=style.BLUE, linewidth=0.6)
-    axes.set(xlabel=f"time since touch, {unit}", ylabel="left, %")
+    axes.set(xlabel=f"time since touch, {unit}", ylabel="curve − law, %")

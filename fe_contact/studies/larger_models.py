@@ -22,7 +22,7 @@ from fe_contact.studies.finite_length import free_ends
 from lumped.errors import FeContactError
 from lumped.materials.energies.base import DEFAULT
 from lumped.result.model_ledger import FINITE_LENGTH
-from lumped.result.result import NO_KEY, LedgerEntry, Quantity, Result
+from lumped.result.result import NO_KEY, LedgerEntry, Quantity, Result, percent
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.schema import Table
@@ -51,19 +51,24 @@ class MeasuredEffect:
 
     def __str__(self) -> str:
         if self.spread is not None:
-            estimate = f"{self.spread[0]:+.2g} to {self.spread[1]:+.2g}"
+            estimate = " to ".join(map(_signed, self.spread))
         else:
-            estimate = "none" if self.estimate is None else f"{self.estimate:.2g}"
+            estimate = "none" if self.estimate is None else percent(self.estimate)
         if self.change is None or self.error is None:
             return f"{self.effect}: estimate {estimate} | not measured: {self.reason}"
         by = "" if self.spread is None else f"by {DEFAULT} where the scene names no energy"
-        found = ", ".join(filter(None, (f"measured {self.change:+.2g} +- {self.error:.1g}", by, self.note)))
+        found = ", ".join(filter(None, (f"measured {_signed(self.change)} +- {percent(self.error)}", by, self.note)))
         asked = f" ({self.setting})" if self.setting else ""
         return f"{self.effect}{asked}: estimate {estimate} | {found}"
 
     def to_json(self) -> Table:
         """Its fields."""
         return asdict(self)
+
+
+def _signed(change: float) -> str:
+    """A change of the peak force in words."""
+    return f"{'' if change < 0.0 else '+'}{percent(change)}"
 
 
 @dataclass(frozen=True)
@@ -80,7 +85,7 @@ class SufficientModel:
     open: tuple[LedgerEntry, ...] = ()
 
     def __str__(self) -> str:
-        took = [f"{entry.effect} ({entry.setting}), estimated {entry.size:.2g}" for entry in self.taken]
+        took = [f"{entry.effect} ({entry.setting}), estimated {percent(entry.size)}" for entry in self.taken]
         said = f"the model takes in {', '.join(took)}" if took else "the model is the scene's own"
         left = [f"{effect} is left out: {reason}" for effect, reason in self.left.items()]
         undecided = [f"{entry.effect} is open: {entry.note}; {entry.cure}" for entry in self.open]

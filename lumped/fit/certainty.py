@@ -18,11 +18,10 @@ from numpy.typing import NDArray
 from lumped.errors import BadInput, NotReached
 from lumped.fit.problem import SOLID, Coordinates, FitProblem, Values
 from lumped.fit.profile import MIXED, Ends, Seen, forward_slopes, open_side
-from lumped.fit.record import Estimate
+from lumped.fit.record import LEVEL, Estimate
 from lumped.fit.space import TOUCH
 from lumped.numbers import Array
 
-CONFIDENCE = 0.95  # of the intervals
 STEP = 1e-3  # of the differences
 # Residuals per relative change: below the first nothing is felt, above the second ratio two are one.
 UNFELT, INSEPARABLE = 1e-9, 1e8
@@ -267,7 +266,7 @@ def student(freedom: int) -> float:
     """Student's t of the two-sided confidence."""
     from scipy.special import stdtrit
 
-    return float(stdtrit(freedom, 0.5 + 0.5 * CONFIDENCE))
+    return float(stdtrit(freedom, 0.5 + 0.5 * LEVEL))
 
 
 def _at_bound(problem: FitProblem, name: str, value: float, guess: Values) -> bool:

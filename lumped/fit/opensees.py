@@ -13,6 +13,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from lumped import laws
 from lumped.errors import BadInput, Fault, FeContactError
 from lumped.fit import Fit, fit
 from lumped.fit.space import GAP
@@ -73,7 +74,8 @@ class UniaxialMaterial:
 
 
 def check(name: str) -> None:
-    """Raise BadInput for a law which OpenSees does not have, and that is not stood in for."""
+    """Raise BadInput for a name of no law, and for a law which OpenSees does not have and that is not stood in for."""
+    laws.get(name)
     if name not in (*(law.name for law in LAWS), *(law.name for law in REMEMBERING)):
         raise _refused(name)
 

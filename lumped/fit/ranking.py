@@ -13,7 +13,7 @@ from lumped import laws
 from lumped.errors import BadInput, NotReached
 from lumped.fit.measured import Measured
 from lumped.fit.noise import Whiteness, whiteness
-from lumped.fit.record import Fit
+from lumped.fit.record import LEVEL, Fit
 from lumped.fit.search import search
 from lumped.fit.space import TOUCH, default_free
 from lumped.numbers import Array
@@ -108,7 +108,8 @@ def residuals(curve: Curve, fit: Fit) -> Array:
 
 def write_ranking(ranked: Sequence[RankedFit], curve: Curve, where: Path) -> None:
     """fits.json, fits.csv with a line a law, and forces.csv with the fitted forces at the curve's own times."""
-    write_json(where / RECORD, dict(plain({"schema": SCHEMA, "laws": [one.to_json() for one in ranked]})))
+    content = {"schema": SCHEMA, "level": LEVEL, "laws": [one.to_json() for one in ranked]}
+    write_json(where / RECORD, dict(plain(content)))
     write_csv(where / "fits.csv", HEADER, [_row(i, one) for i, one in enumerate(ranked, start=1)])
     fits = [one.fit for one in ranked if one.fit is not None]
     columns = [curve.time, curve.force, *(fit.history.force_at(curve.time) for fit in fits)]

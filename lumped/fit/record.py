@@ -21,12 +21,13 @@ from lumped.schema.shown import Picture, curves, html_table
 
 Array = NDArray[np.float64]
 SCHEMA, RECORD = "fe-contact/fit/1", "fit.json"
+LEVEL = 0.95  # of the intervals
 WIDTH = 12  # look: of a parameter's name
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """A value and its 95 % confidence interval; the ends are None where the curve does not tell them."""
+    """A value and its confidence interval of the level; the ends are None where the curve does not tell them."""
 
     value: float
     low: float | None
@@ -37,7 +38,8 @@ class Estimate:
         if self.low is None and self.high is None:
             return f"{self.value:.6g} {self.unit}, interval unknown".replace(" ,", ",")
         low, high = ("open" if end is None else f"{end:.6g}" for end in (self.low, self.high))
-        between = "" if low == high else f" ({low} to {high})"  # what nothing free changes has none
+        # what nothing free changes has none
+        between = "" if low == high else f" ({low} to {high}, {100.0 * LEVEL:g} %)"
         return f"{self.value:.6g}{between} {self.unit}".rstrip()
 
 
@@ -103,6 +105,7 @@ class Fit:
             "schema": SCHEMA,
             "law": self.law,
             "converged": True,
+            "level": LEVEL,
             "parameters": {name: asdict(estimate) for name, estimate in self.parameters.items()},
             "held": dict(self.held),
             "names": list(self.parameters),

@@ -9,10 +9,10 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.fit.noise import Whiteness, autocovariance, memory, whiteness
+from lumped.fit.noise import Whiteness, autocovariance, memory, whitened, whiteness
 from lumped.fit.profile import open_side
 from lumped.identify.ensemble import posterior_of
-from lumped.identify.histories import Histories
+from lumped.identify.histories import Histories, Noise
 from lumped.identify.profile import LikelihoodProfile, Valley, correlation_of, quantile
 from lumped.identify.record import ByReference, FittedCurve, Identified, Interval, Posterior, ToldValley, hull
 from lumped.numbers import Array
@@ -32,9 +32,9 @@ def answer(
 ) -> Identified:
     """At the most likely place, and in the other valleys; `names`: of the curves; `sample`: draws of the posterior."""
     sought = valleys[0].sought
-    whitened = histories.whitened(histories.differences(sought))
-    tested = whiteness(_inside(histories, sought, whitened))
-    growth = 1.0 if tested.noise else max(map(memory, whitened))
+    residuals = histories.whitened(histories.differences(sought))
+    tested = whiteness(_inside(histories, sought, residuals))
+    growth = 1.0 if tested.noise else max(map(memory, residuals))
     widened = math.sqrt(growth)
     bound, least = quantile(histories) * growth, histories.squares(sought)
     profiles, told = _apart([LikelihoodProfile(histories, one, least + bound, bound) for one in valleys], least)
@@ -47,6 +47,7 @@ def answer(
         *(_of_end(name, end, parameters[name]) for name, end in ends.items()),
         *_warnings(parameters, told),
         *_of_residuals(tested, widened, curves),
+        *_of_a_low_pass(histories, sought, parameters),
         *_of_the_sample(posterior, told),
         *_of_the_reference(by_reference, parameters),
     )
@@ -135,13 +136,44 @@ def _warnings(parameters: Mapping[str, Interval], valleys: Sequence[ToldValley])
 def _of_residuals(tested: Whiteness, widened: float, curves: Sequence[FittedCurve]) -> Iterator[str]:
     if tested.of_the_law:
         worst = max(curves, key=lambda curve: curve.error)
-        told = f"what is left is no noise (Ljung-Box, p = {tested.probability:.1g}): the model errs by about"
-        cause = f"{told} {100.0 * worst.error:.2g} % of the peak, or the noise is coloured (--corner)"
-        yield f"{cause}; the intervals are {widened:.2g} times as wide, and not to be trusted"
+        told = f"the values found do not reproduce the curves (Ljung-Box, p = {tested.probability:.1g})"
+        cause = f"{told}: the model errs by about {100.0 * worst.error:.2g} % of the peak, or a low pass changed the"
+        rest = "curves, or the noise is coloured (--corner); values and intervals are not to be trusted, these"
+        yield f"{cause} {rest} {widened:.2g} times as wide as those of noise"
     elif not tested.noise:
         told = f"neighbouring rows of what is left are opposed (Ljung-Box, p = {tested.probability:.1g})"
         cause = "no law's error is so, but noise of less memory than it was taken for"
         yield f"{told}: {cause}; the intervals are not to be trusted; cure: --corner of the instrument, or none"
+
+
+def _of_a_low_pass(histories: Histories, sought: Array, parameters: Mapping[str, Interval]) -> Iterator[str]:
+    """Whether what coloured the noise moves the likeliest place out of an interval if it filtered the force too.
+
+    By the slopes there: how far is not told, for a low pass delays too, and the touch is far from where it would be.
+    """
+    changes = [
+        _filtered_less(one.force - left, noise)
+        for one, left, noise in zip(histories.samples, histories.differences(sought), histories.noises, strict=True)
+    ]
+    moved = sought + np.linalg.pinv(histories.slopes(sought)) @ np.concatenate(changes)
+    told = [
+        key.name
+        for key, place in zip(histories.keys, moved.tolist(), strict=False)
+        if not parameters[key.name].holds(key.at(place))
+    ]
+    if told:
+        cause = "the noise is coloured as by a low pass; if that filtered the force too, the intervals of"
+        yield f"{cause} {', '.join(told)} do not hold their values; cure: a record of a faster instrument"
+
+
+def _filtered_less(force: Array, noise: Noise) -> Array:
+    """A force through the low pass that gives white noise this colour, less itself, as the residuals are seen.
+
+    Zeros where the colour is none of a low pass. Seen so the filtered force is the force times 1 - sum a_k.
+    """
+    colour, total = noise.colour, float(noise.colour.sum())
+    change = (1.0 - total) * force[colour.size :] - whitened(force, colour)
+    return change / noise.deviation if 0.0 < total < 1.0 else np.zeros_like(change)
 
 
 def _of_the_sample(posterior: Posterior | None, valleys: Sequence[ToldValley]) -> Iterator[str]:

@@ -33,6 +33,10 @@ class Interval:
     unit: str
     unfound: tuple[str, ...] = ()
 
+    def holds(self, value: float) -> bool:
+        """Whether a value lies within; an open end lets all through."""
+        return (self.low is None or self.low <= value) and (self.high is None or value <= self.high)
+
 
 def hull(every: Sequence[Interval]) -> Interval:
     """The value of the first with the ends of all."""
@@ -56,10 +60,7 @@ class ToldValley:
 
     def holds(self, values: Mapping[str, float]) -> bool:
         """Whether all values lie within the intervals; an open end lets all through."""
-        every = ((one, values[name]) for name, one in self.parameters.items())
-        return all(
-            (one.low is None or one.low <= value) and (one.high is None or value <= one.high) for one, value in every
-        )
+        return all(one.holds(values[name]) for name, one in self.parameters.items())
 
 
 @dataclass(frozen=True)

@@ -214,9 +214,8 @@ class PoundingReader(TableReader):
 
     def scene(self, path: Path) -> Table:
         """The tables of a scene, of a file beside this one or of a packaged name; none with a fault noted."""
-        packaged = path.suffix != ".toml" and path.name == str(path)
         try:
-            return parsed(SCENES.path(path.name) if packaged else self.folder / path)
+            return parsed(SCENES.path(path.name) if SCENES.is_name(str(path)) else SCENES.resolved(self.folder / path))
         except BadInput as bad:
             self.faults += [replace(fault, source=self.source, key="law.scene") for fault in bad.faults]
             return {}

@@ -149,11 +149,11 @@ def _text(content: bytes) -> str:
 
 def _header(source: str, lines: Sequence[str]) -> CurveHeader:
     """The first line that names a time and a force, the units perhaps in the next. Raises BadInput."""
-    first, lacking = "", [TIME.plain, FORCE.plain]
+    nearest, lacking = "", [TIME, FORCE]
     for number, line in enumerate(lines[:PREAMBLE]):
         if line.startswith("sep="):  # of Excel, for itself
             continue
-        first = first or line.strip()
+        nearest = nearest or line.strip()
         for separator in SEPARATORS:
             cells = _cells(line, separator)
             below = _cells(lines[number + 1], separator) if number + 1 < len(lines) else []
@@ -165,10 +165,12 @@ def _header(source: str, lines: Sequence[str]) -> CurveHeader:
                 raise BadInput(Fault(source, "", reason)) from None
             if time and force and time.place != force.place:
                 return CurveHeader(time, force, len(cells), separator, number + 1 + more)
-            missing = [one.plain for one, there in ((TIME, time), (FORCE, force)) if not there]
-            lacking = min(lacking, missing or lacking, key=len)
-    said = f"missing column, with a header of {shown(first)}; accepted: time_s,force_N, or t [ms];F [kN] and the like"
-    raise BadInput(Fault(source, name, said) for name in lacking)
+            missing = [one for one, there in ((TIME, time), (FORCE, force)) if not there]
+            if 0 < len(missing) < len(lacking):
+                nearest, lacking = separator.join(with_units), missing
+    said = f"missing column, with a header of {shown(nearest)}; accepted: time_s,force_N, or t [ms];F [kN] and the like"
+    units = {one.plain: ", ".join(filter(str.isascii, one.units)) for one in lacking}
+    raise BadInput(Fault(source, name, f"{said}, in {known}") for name, known in units.items())
 
 
 def _cells(line: str, separator: str) -> list[str]:

@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import cache
 from pathlib import Path
+from typing import ClassVar
 
 from lumped.numbers import Array
 from lumped.result.folder import RECORD, publish
@@ -40,6 +41,7 @@ RULED_ABSOLUTE = ("restitution", "history_l2")
 ENERGY_TERMS = ("in", "out", "stored", "viscous", "radiated", "contact", "numerical", "residual")
 WITHIN, ABOVE, OPEN, UNKNOWN = "within tolerance", "above it", "open", "unknown"
 NO_KEY = "no larger model here"
+PEAK_FORCE = "peak force"
 LEFT_OUT = ("neglected", "none assumed")  # how a ledger's effect is treated that is not there at all
 
 
@@ -148,8 +150,12 @@ class LedgerEntry:
     @property
     def sentence(self) -> str:
         """What is left out, by how much that changes the peak force, and how to include it."""
+        return self.told_of(PEAK_FORCE)
+
+    def told_of(self, force: str) -> str:
+        """The same of a force called so."""
         left = "is left out" if self.treated in LEFT_OUT else f"is taken as {self.treated}"
-        size = f"it may change the peak force by {percent(self.size)}" if self.known else "by how much is unknown"
+        size = f"it may change the {force} by {percent(self.size)}" if self.known else "by how much is unknown"
         return f"{self.effect} {left}; {size}; {self.cure}"
 
     def line(self, tolerance: float) -> str:
@@ -197,6 +203,7 @@ class Result:
     contacts: tuple[Mapping[str, float | None], ...] = ()
     recovery: IndentationLeft | None = None
     weighed: tuple[Table, ...] = ()
+    ruled_force: ClassVar[str] = PEAK_FORCE  # to which the ledger's estimates are relative
 
     @property
     def model_sufficient(self) -> bool:
@@ -334,13 +341,13 @@ def worst(ledger: Sequence[LedgerEntry]) -> LedgerEntry:
     return max((entry for entry in ledger if entry.estimate is not None), key=lambda entry: entry.estimate or 0.0)
 
 
-def good_to(ledger: Sequence[LedgerEntry]) -> str:
-    """A line: how much of the force the model may miss, by what, and what is not known; empty where nothing is."""
+def good_to(ledger: Sequence[LedgerEntry], force: str = PEAK_FORCE) -> str:
+    """A line: how much of a force called so a model may miss, by what, what is not known; empty where nothing is."""
     if not any(entry.known for entry in ledger):
         return ""
     most = max(ledger, key=lambda entry: entry.size)
     unknown = [entry.effect for entry in ledger if not entry.known]
-    said = f"this model is good to about {percent(most.size)} of the peak force, for {most.effect}" if most.size else ""
+    said = f"this model is good to about {percent(most.size)} of the {force}, for {most.effect}" if most.size else ""
     return "; ".join(filter(None, (said, f"unknown: {', '.join(unknown)}" if unknown else "")))
 
 

@@ -11,6 +11,7 @@ import re
 import stat
 import tomllib
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -79,22 +80,40 @@ class Packaged:
 
     def path(self, name: str) -> Path:
         """The file of a name; raises BadInput, with the nearest name, when there is none."""
-        names = self.names
-        if name not in names:
-            known = f"no such file, nor a packaged {self.kind}{nearest(name, names)}; packaged: {', '.join(names)}"
+        if name not in self.names:
+            hint = nearest(name, self._near(Path(name)))
+            known = f"no such file, nor a packaged {self.kind}{hint}; packaged: {', '.join(self.names)}"
             raise BadInput(Fault(name, "", known))
         return data_folder() / self.folder / f"{name}.toml"
 
     def resolved(self, source: str | Path) -> Path:
-        """The file that a path or one of the names stands for. Raises BadInput for an unknown name.
+        """The file that a path or one of the names stands for. Raises BadInput, with the nearest name, for neither.
 
         A folder of one of the names, as of its results, hides no packaged file.
         """
         path = Path(source)
         hidden = exists(path) and not (path.is_dir() and str(source) in self.names)
-        if not hidden and path.suffix != ".toml" and path.name == str(source):
+        if not hidden and self.is_name(str(source)):
             return self.path(str(source))
+        if not hidden:
+            reason = f"cannot be read: no such file{nearest(path.stem, self._near(path))}"
+            accepted = f"accepted: a TOML file, or the name of a packaged {self.kind}"
+            raise BadInput(Fault(str(source), "", f"{reason}; {accepted}"))
         return path
+
+    @staticmethod
+    def is_name(text: str) -> bool:
+        """Whether a text looks like a packaged name, and not like a path."""
+        path = Path(text)
+        return path.suffix != ".toml" and path.name == text
+
+    def _near(self, path: Path) -> Mapping[str, str]:
+        """What may be meant by a path that is none: the packaged names, and by their stems the TOML files beside it."""
+        with suppress(OSError, ValueError):  # a folder that is none, or whose name cannot be one
+            return dict(zip(self.names, self.names, strict=True)) | {
+                one.stem: str(one) for one in sorted(path.parent.glob("*.toml"))
+            }
+        return {}
 
 
 SCENES = Packaged("scenes", "scene")

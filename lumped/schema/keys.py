@@ -195,6 +195,27 @@ class File:
 
 Sets = tuple[Mapping[str, Key], ...]
 
+# What users call a key; its own name resembles none of these, and some of them resemble another key.
+ALSO_CALLED: Mapping[str, tuple[str, ...]] = {
+    "velocity": ("speed", "v", "v0"),
+    "mass": ("m", "weight"),
+    "radius": ("r", "diameter"),
+    "shape": ("type", "kind", "geometry"),
+    "law": ("type", "kind", "model"),
+    "E": (YOUNG := ("young", "young_modulus", "youngs_modulus", "elastic_modulus", "modulus")),
+    "E0": YOUNG,
+    "E1": YOUNG,
+    "nu": ("poisson", "poisson_ratio", "poissons_ratio"),
+    "density": ("rho",),
+    "yield_strength": ("sigma_y",),
+    "eta": ("viscosity", "damping"),
+    "C1": ("viscosity", "damping"),
+    "thickness": ("depth", "height"),
+    "gravity": ("g",),
+    "k": ("stiffness",),
+    "e": ("restitution", "cor"),
+}
+
 
 def read_table(
     source: str, path: str, table: Mapping[str, object], keys: Mapping[str, Key]
@@ -228,7 +249,8 @@ def optional(keys: Mapping[str, Key]) -> dict[str, Key]:
 def unknown_key(name: str, names: Iterable[str]) -> str:
     """What to say of a key which is none of `names`."""
     names = sorted(names)
-    return f"unknown key; accepted: {', '.join(names)}{nearest(name, names)}"
+    meant = [key for key in names if name.lower() in ALSO_CALLED.get(key, ())]
+    return f"unknown key; accepted: {', '.join(names)}{nearest(meant[0] if meant else name, names)}"
 
 
 def _join(path: str, name: str) -> str:

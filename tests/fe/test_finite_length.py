@@ -22,6 +22,7 @@ from fe_contact.studies.larger_models import MeasuredEffect, measure
 from fe_contact.targets.base import TARGETS
 from lumped import Scene
 from lumped.result.model_ledger import Peak, ends
+from lumped.result.result import percent
 from lumped.scene.indenter import Indenter
 
 THICK = 0.003  # m
@@ -187,7 +188,7 @@ def test_a_plan_tells_what_is_measured_beside_the_estimate(capsys: pytest.Captur
     assert set(told["budget"]) == {"penalty", "order", "section", "length"}
     assert 0.5 * told["estimate"] < -told["change"] < 2.0 * told["estimate"]
     line = str(MeasuredEffect(**told))
-    assert line.startswith(f"finite length: estimate {told['estimate']:.2g} | measured -0.1")
+    assert line.startswith(f"finite length: estimate {percent(told['estimate'])} | measured -1")
     assert line.endswith(", of the force at the peak depth, at small strains")
 
 

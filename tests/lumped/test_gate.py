@@ -113,6 +113,10 @@ def test_a_spoiled_curve_is_named(name: str, says: str, spoil: Spoil, lead: floa
         ("time_s,force_N\n0,1,0,5\n0,2,1,5\n", "commas separate the columns and the decimals too"),
         ("time_s,force_N\n0,1\n1,\n2,3\n", "samples are missing, the first in row 2"),
         ("time_s;pressure_Pa\n0;1\n1;2\n", "force_N: missing column"),
+        (
+            "Logger 3000\ntime,force\nms,kip\n0,1\n1,2\n",
+            re.escape("force_N: missing column, with a header of 'time [ms],force [kip]'; ") + ".* in N, kN, .* lbf",
+        ),
         ("t,left [N],right [N]\n0,1,2\n1,2,3\n", "which is meant"),
     ],
 )

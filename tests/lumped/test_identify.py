@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.optimize import brentq, least_squares, minimize_scalar
+from scipy.signal import butter, lfilter
 from scipy.special import stdtrit
 
 from lumped import BadInput, Scene, identify, laws, simulate
@@ -432,6 +433,22 @@ def test_the_corner_of_a_low_pass_stands_in_for_the_silence() -> None:
     one = told.parameters["target.material.E"]
     assert (one.low or np.inf) < 1e6 < (one.high or 0.0)
     assert told.curves[0].deviation == pytest.approx(0.01 * force.max(), rel=0.15)
+
+
+def test_a_low_pass_that_filtered_the_force_too_is_warned_of() -> None:
+    """Of second order, its corner at ten times the contact's rate: the values are off, whatever the residuals say."""
+    true = {"E1": 2.2e6, "E2": 1.3e6, "C1": 1.5e4}
+    own, fast = {f"target.material.{name}": value for name, value in true.items()}, {"striker.velocity": 0.5}
+    scene = Scene.load("polymer-sphere", own | fast)
+    history = simulate(laws.get("ting").of(scene), scene).history
+    time = np.arange(-0.01, 0.04, 5e-5)
+    force = history.force_at(time) + 0.001 * history.force.max() * np.random.default_rng(1).normal(size=time.size)
+    filtered = lfilter(*butter(2, 1e3, fs=2e4), force)
+    for record, warned in ((force, False), (filtered, True)):
+        found = identify({"drop": Curve(time, record)}, "polymer-sphere", list(true), overrides=fast)
+        said = f"low pass; if that filtered the force too, the intervals of {', '.join(own)} do not hold their values"
+        assert any(said in one for one in found.warnings) == warned
+        assert all(found.parameters[name].holds(value) != warned for name, value in own.items())
 
 
 def test_a_corner_that_the_record_does_not_have_is_no_noise() -> None:

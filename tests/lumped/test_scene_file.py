@@ -139,6 +139,25 @@ def test_unknown_key_names_the_accepted_and_the_nearest() -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("key", "meant"),
+    [
+        ("striker.speed", "velocity"),
+        ("striker.diameter", "radius"),
+        ("striker.type", "shape"),
+        ("target.material.Youngs_Modulus", "E0"),
+        ("target.material.poisson", "nu"),
+        ("target.material.rho", "density"),
+        ("model.g", "gravity"),
+    ],
+)
+def test_what_users_call_a_key_leads_to_it(key: str, meant: str) -> None:
+    """Where letters alone lead elsewhere, as from speed to shape, or nowhere."""
+    (fault,) = faults(changed(key, 1.0))
+    assert fault.startswith(f"scene.toml: {key}: unknown key; ")
+    assert fault.endswith(f"; did you mean {meant}?")
+
+
 def test_all_faults_come_at_once_but_at_most_twenty() -> None:
     table = changed("striker.mass", -1.0)
     table["striker"]["radius"] = math.nan
@@ -203,6 +222,31 @@ def test_overrides_replace_and_are_checked() -> None:
         load(Scene, "polymer-sphere", {"striker.mass": 0.0})
     with pytest.raises(BadInput, match="not a table"):
         load(Scene, "polymer-sphere", {"name.first": 1.0})
+
+
+@pytest.mark.parametrize(
+    ("asked", "meant"),
+    [
+        ("folder/fuond.toml", "folder/found.toml"),
+        ("folder/found", "folder/found.toml"),
+        ("polymer-sphere.toml", "polymer-sphere"),
+        ("nowhere/polymer-spher.toml", "polymer-sphere"),
+        ("mnie", "mine.toml"),
+    ],
+)
+def test_a_file_that_is_none_leads_to_the_nearest(
+    asked: str, meant: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of the files beside it and of the packaged names."""
+    monkeypatch.chdir(tmp_path)
+    Path("folder").mkdir()
+    for name in ("mine.toml", "folder/found.toml"):
+        Path(name).touch()
+    with pytest.raises(BadInput) as caught:
+        Scene.load(asked)
+    assert str(caught.value).startswith(f"{asked}: ")
+    assert "no such file" in str(caught.value)
+    assert f"; did you mean {meant}?" in str(caught.value)
 
 
 def test_assignments_are_toml_or_text() -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from fe_contact.studies import style
@@ -62,7 +63,7 @@ def _plot(study: TransferStudy, key: str, where: Path, name: str) -> tuple[Path,
             style.label(axes, chr(ord("a") + i), quantity.replace("_", " "))
             _states(axes, study, key, rows)
         _ranges(panels[len(QUANTITIES)], study, key, rows)
-        style.label(panels[len(QUANTITIES)], chr(ord("a") + len(QUANTITIES)), "every quantity held to 10, 5, 1 %")
+        style.label(panels[len(QUANTITIES)], chr(ord("a") + len(QUANTITIES)), "all within")
         _states(panels[len(QUANTITIES)], study, key, rows)
     return sheet.paths
 
@@ -114,7 +115,7 @@ def _deviations(axes: Axes, rows: Sequence[TransferRow]) -> None:
     known = np.concatenate([deviation for _, deviation in curves.values()] or [np.zeros(1)])
     most = min(1.5 * max(float(np.nanmax(np.abs(known), initial=0.0)), 1.2 * LINEAR), MOST)
     absolute = any(row.quantity == "restitution" for row in rows)
-    axes.set(ylim=(-most, most), ylabel="difference, hundredths" if absolute else "deviation, %")
+    axes.set(ylim=(-most, most), ylabel=f"{'hundredths' if absolute else 'deviation, %'} (linear to {LINEAR:g})")
     for level in LEVELS:
         for sign in (-1.0, 1.0):
             axes.axhline(sign * 100.0 * level, color=style.GREY, linewidth=0.35, alpha=0.6, zorder=0)
@@ -203,3 +204,14 @@ def _ranges(axes: Axes, study: TransferStudy, key: str, rows: Sequence[TransferR
                   fontsize=NAMES, va="center")  # fmt: skip
     axes.set(ylim=(len(names) - 0.4, -0.6), yticks=[])
     axes.spines["left"].set_visible(False)
+    _key(axes)
+
+
+def _key(axes: Axes) -> None:
+    """The shade of every level, over those of the coarser ones as in the panel, beside its title."""
+    shades = [
+        tuple(Patch(color=style.BLACK, alpha=BROAD[one], linewidth=0.0) for one in LEVELS if one >= level)
+        for level in LEVELS
+    ]
+    axes.legend(shades, [f"{100.0 * level:g} %" for level in LEVELS], ncols=len(LEVELS), loc="lower right",
+                bbox_to_anchor=(1.0, 0.98), fontsize=NAMES, handlelength=1.2, columnspacing=1.0)  # fmt: skip
