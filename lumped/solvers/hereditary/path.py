@@ -140,22 +140,26 @@ class Path:
         """The index of the piece of each place."""
         return np.asarray(self.breaks[1:-1].searchsorted(places, side="right"))
 
-    def _basis(self, places: Array) -> tuple[Array, NDArray[np.intp]]:
-        """Chebyshev polynomials at places of any shape, (N+1, ...), and the piece of each."""
-        piece = self._piece(places)
-        low, high = self.breaks[piece], self.breaks[piece + 1]
+    def _basis(self, places: Array) -> tuple[Array, NDArray[np.intp] | None]:
+        """Chebyshev polynomials at places of any shape, (N+1, ...), and the piece of each; None where there is one."""
+        piece: NDArray[np.intp] | None = None
+        low, high = self.breaks[:2]
+        if len(self.coefficients) > 1:
+            piece = self._piece(places)
+            low, high = self.breaks[piece], self.breaks[piece + 1]
         x = (2.0 * places - low - high) / (high - low)
         return chebyshev(np.minimum(np.maximum(x, -1.0), 1.0), self.coefficients.shape[2]), piece
 
 
-def _sums(series: Array, basis: Array, piece: NDArray[np.intp]) -> Array:
+def _sums(series: Array, basis: Array, piece: NDArray[np.intp] | None) -> Array:
     """Polynomials (..., m, N+1), at each place the one of its piece, where the basis was made, (N+1, ...)."""
-    if series.shape[-2] <= FEW_PIECES:  # all of them at every place are sooner told than coefficients of every place
-        every = series @ basis.reshape(len(basis), -1)
-        found = every[..., piece.ravel(), np.arange(piece.size)]
-    else:
-        found = (series[..., piece.ravel(), :] * basis.reshape(len(basis), -1).T).sum(axis=-1)
-    return np.asarray(found.reshape(*series.shape[:-2], *piece.shape))
+    flat, shape = basis.reshape(len(basis), -1), (*series.shape[:-2], *basis.shape[1:])
+    if piece is None:
+        return np.asarray((series[..., 0, :] @ flat).reshape(shape))
+    if series.shape[-2] > FEW_PIECES:
+        return np.asarray((series[..., piece.ravel(), :] * flat.T).sum(axis=-1).reshape(shape))
+    # all of them at every place are sooner told than coefficients of every place
+    return np.asarray((series @ flat)[..., piece.ravel(), np.arange(piece.size)].reshape(shape))
 
 
 def values_of(index: int, paths: Sequence[Path], places: Array) -> Array:
@@ -179,7 +183,8 @@ def chebyshev(x: Array, count: int) -> Array:
     last = 1
     while last < count - 1:
         more = min(last, count - 1 - last)
-        found[last + 1 : last + more + 1] = 2.0 * found[last] * found[1 : more + 1] - found[last - more : last][::-1]
+        next_ones = np.multiply(2.0 * found[last], found[1 : more + 1], out=found[last + 1 : last + more + 1])
+        next_ones -= found[last - more : last][::-1]
         last += more
     return found
 
