@@ -113,7 +113,7 @@ class Scene:
         """Whether the scene has a shape and a material, not a law's parameters alone."""
         return self.shape is not None
 
-    @property
+    @cached_property
     def geometry(self) -> Geometry:
         """Shape, target and material; raises BadInput where the scene has a law's parameters alone."""
         if self.shape is None or self.material is None:

@@ -80,11 +80,7 @@ class Path:
         low, high = self.breaks[piece : piece + 2].tolist()
         own = self.coefficients[piece, index]
         rise = slopes(own.size) @ own * (2.0 / (high - low))
-
-        def function(series: list[float]) -> Curve:
-            return lambda place: chebyshev_sum(series, (2.0 * place - low - high) / (high - low))
-
-        return function(own.tolist()), function(rise.tolist())
+        return chebyshev_curve(own.tolist(), low, high), chebyshev_curve(rise.tolist(), low, high)
 
     @cached_property
     def _rises(self) -> Array:
@@ -95,20 +91,25 @@ class Path:
     @cached_property
     def places(self) -> Array:
         """Places that lie densely in every piece, shape (n,)."""
-        inside = self.breaks[self.breaks < self.end]
-        lengths = np.append(inside[1:], self.end) - inside
-        return np.append((inside[:, None] + DENSE[:-1] * lengths[:, None]).ravel(), self.end)
+        edges = np.minimum(self.breaks[: self._last + 2], self.end)
+        inside = edges[:-1, None] + DENSE[:-1] * (edges[1:] - edges[:-1])[:, None]
+        return np.concatenate([inside.ravel(), edges[-1:]])
+
+    @cached_property
+    def _last(self) -> int:
+        """The index of the piece in which it ends."""
+        return int(self.breaks.searchsorted(self.end)) - 1
 
     def samples(self, index: int) -> Array:
         """One field at `places`, shape (n,)."""
-        last = int(np.searchsorted(self.breaks, self.end)) - 1
+        last = self._last
         low, high = self.breaks[last : last + 2].tolist()
         series = _at_dense(self.coefficients.shape[2])
         final = series
         if self.end < high:
             final = chebyshev((2.0 * DENSE * (self.end - low)) / (high - low) - 1.0, len(series))
         before = self.coefficients[:last, index] @ series[:, :-1]
-        return np.append(before.ravel(), self.coefficients[last, index] @ final)
+        return np.concatenate([before.ravel(), self.coefficients[last, index] @ final])
 
     def highest(self, index: int, samples: Array) -> tuple[float, float]:
         """Place and height of the highest point of a field, whose :meth:`samples` are known."""
@@ -131,30 +132,34 @@ class Path:
         below = np.flatnonzero(own @ _at_close(own.size)[:, 1:] <= level)
         if not below.size:
             return None
-        value, _ = self.curve(index, len(self.coefficients) - 1)
+        first, *others = own.tolist()
         before, after = (low + (high - low) * CLOSE[below[0] : below[0] + 2]).tolist()
-        return falling_zero(lambda place: value(place) - level, before, after)
+        return falling_zero(chebyshev_curve([first - level, *others], low, high), before, after)
 
     def _piece(self, places: Array | float) -> NDArray[np.intp]:
         """The index of the piece of each place."""
         return np.asarray(self.breaks[1:-1].searchsorted(places, side="right"))
 
-    def _basis(self, places: Array) -> tuple[Array, NDArray[np.intp]]:
-        """Chebyshev polynomials at places of any shape, (N+1, ...), and the piece of each."""
-        piece = self._piece(places)
-        low, high = self.breaks[piece], self.breaks[piece + 1]
+    def _basis(self, places: Array) -> tuple[Array, NDArray[np.intp] | None]:
+        """Chebyshev polynomials at places of any shape, (N+1, ...), and the piece of each; None where there is one."""
+        piece: NDArray[np.intp] | None = None
+        low, high = self.breaks[:2]
+        if len(self.coefficients) > 1:
+            piece = self._piece(places)
+            low, high = self.breaks[piece], self.breaks[piece + 1]
         x = (2.0 * places - low - high) / (high - low)
         return chebyshev(np.minimum(np.maximum(x, -1.0), 1.0), self.coefficients.shape[2]), piece
 
 
-def _sums(series: Array, basis: Array, piece: NDArray[np.intp]) -> Array:
+def _sums(series: Array, basis: Array, piece: NDArray[np.intp] | None) -> Array:
     """Polynomials (..., m, N+1), at each place the one of its piece, where the basis was made, (N+1, ...)."""
-    if series.shape[-2] <= FEW_PIECES:  # all of them at every place are sooner told than coefficients of every place
-        every = series @ basis.reshape(len(basis), -1)
-        found = every[..., piece.ravel(), np.arange(piece.size)]
-    else:
-        found = (series[..., piece.ravel(), :] * basis.reshape(len(basis), -1).T).sum(axis=-1)
-    return np.asarray(found.reshape(*series.shape[:-2], *piece.shape))
+    flat, shape = basis.reshape(len(basis), -1), (*series.shape[:-2], *basis.shape[1:])
+    if piece is None:
+        return np.asarray((series[..., 0, :] @ flat).reshape(shape))
+    if series.shape[-2] > FEW_PIECES:
+        return np.asarray((series[..., piece.ravel(), :] * flat.T).sum(axis=-1).reshape(shape))
+    # all of them at every place are sooner told than coefficients of every place
+    return np.asarray((series @ flat)[..., piece.ravel(), np.arange(piece.size)].reshape(shape))
 
 
 def values_of(index: int, paths: Sequence[Path], places: Array) -> Array:
@@ -178,7 +183,8 @@ def chebyshev(x: Array, count: int) -> Array:
     last = 1
     while last < count - 1:
         more = min(last, count - 1 - last)
-        found[last + 1 : last + more + 1] = 2.0 * found[last] * found[1 : more + 1] - found[last - more : last][::-1]
+        next_ones = np.multiply(2.0 * found[last], found[1 : more + 1], out=found[last + 1 : last + more + 1])
+        next_ones -= found[last - more : last][::-1]
         last += more
     return found
 
@@ -201,12 +207,18 @@ def _at_close(count: int) -> Array:
     return chebyshev(2.0 * CLOSE - 1.0, count)
 
 
-def chebyshev_sum(series: list[float], x: float) -> float:
-    """sum_n series_n T_n(x) by Clenshaw's recurrence."""
-    above, value, twice = 0.0, 0.0, 2.0 * x
-    for coefficient in series[:0:-1]:
-        above, value = value, coefficient + twice * value - above
-    return series[0] + x * value - above
+def chebyshev_curve(series: list[float], low: float, high: float) -> Curve:
+    """sum_n series_n T_n by Clenshaw's recurrence, as a function of a place from low, which is -1, to high, 1."""
+    first, others, middle, scale = series[0], series[:0:-1], low + high, 1.0 / (high - low)
+
+    def value(place: float) -> float:
+        x = (2.0 * place - middle) * scale
+        above, here, twice = 0.0, 0.0, 2.0 * x
+        for coefficient in others:
+            above, here = here, coefficient + twice * here - above
+        return first + x * here - above
+
+    return value
 
 
 class PathClock(Protocol):
