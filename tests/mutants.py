@@ -122,8 +122,6 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("lumped/laws/rod_waves.py", "COARSEST, FINEST, FINER", ""): BEGINS,
     ("lumped/solvers/hereditary/march.py", "Stretch._error", "tail(values[self.force])"): BEGINS,
     ("fe_contact/budget/runs.py", "PLACINGS", ""): BEGINS,
-    ("fe_contact/indentation.py", "settings", ""): BEGINS,
-    ("fe_contact/indentation.py", "COARSEST", ""): BEGINS,
     ("fe_contact/waves/plan.py", "LOOSER", ""): BEGINS,
     ("fe_contact/relaxing_impact.py", "plan", ""): BEGINS,
     ("fe_contact/relaxing_impact.py", "ELEMENTS", ""): BEGINS,

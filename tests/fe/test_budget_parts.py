@@ -297,6 +297,17 @@ def test_what_one_contact_misses_is_said_without_its_number() -> None:
         assert first == f"{said} 0.001 not reached: duration to 0.01"
 
 
+@pytest.mark.parametrize(("error", "met"), [(1.1e-2, "0.013"), (np.inf, "")])
+def test_the_tolerance_that_is_met_is_said_where_it_is_known(error: float, met: str) -> None:
+    """Rounded up to a tenth of a decade."""
+    quantity = {name: Quantity(1.0, error if name == "duration" else 1e-4, "") for name in UNITS}
+    found: Any = SimpleNamespace(numerics=SimpleNamespace(tolerance=1e-3), parts=(quantity,))
+    scene: Any = SimpleNamespace(motion=SimpleNamespace(impacts=1))
+    said = "; ".join(solved._missed(scene, SimpleNamespace(refused=""), found))
+    assert ("is met" in said) == bool(met)
+    assert not met or f"a tolerance of {met} is met" in said
+
+
 @pytest.mark.parametrize("few", [True, False])
 def test_a_mesh_is_varied_with_no_fewer_steps_where_few_would_hide_what_it_changes(
     few: bool, numerics: WaveNumerics

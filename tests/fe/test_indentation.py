@@ -16,6 +16,7 @@ from lumped import BadInput, Material, Relaxation
 from lumped.indentation import Indentation
 from lumped.scene.indenter import Indenter
 from lumped.shapes import SHAPES, Shape, Sphere
+from lumped.shapes.punch import Punch
 from lumped.targets import HalfSpace, Target
 from lumped.targets.layer import Layer
 from lumped.targets.ring import Ring
@@ -257,6 +258,31 @@ def test_a_setting_is_told_by_depths_from_the_smallest_to_the_largest() -> None:
     assert np.diff(rank) == pytest.approx(11.0 / 3.0, abs=1.0), "evenly between"
     for all_of in (indenting(depth.tolist(), False)._telling(4), indenting(depth.tolist(), True)._telling(12)):
         assert np.array_equal(all_of, np.arange(12))
+
+
+@pytest.mark.parametrize("tolerance", np.geomspace(1e-6, 0.1, 11).tolist())
+def test_a_tolerance_asks_for_as_many_elements_as_the_order_of_the_mesh_needs(tolerance: float) -> None:
+    """Of order four: twice as many for a sixteenth. Large strains take fewer where it is loose, for none is cheap."""
+
+    def elements(tolerance: float, large: bool) -> float:
+        return settings({"tolerance": tolerance}, Sphere(1.0), large).elements_per_contact
+
+    small, large = (elements(tolerance, one) for one in (False, True))
+    assert 2.0 <= large <= small <= 32.0
+    if tolerance < 1e-4:
+        assert small == pytest.approx(elements(1e-4, False) * (1e-4 / tolerance) ** 0.25)
+    else:
+        assert small == elements(1e-4, False)
+    if tolerance > 1e-3:
+        assert large == pytest.approx(max(2.0, small * (1e-3 / tolerance) ** 0.5))
+    else:
+        assert large == small
+
+
+@pytest.mark.parametrize(("shape", "stiffer"), [(Sphere(1.0), 1.0), (Punch(1.0), 16.0)])
+def test_a_pressure_that_is_infinite_at_a_rim_wants_a_stiffer_penalty(shape: Shape, stiffer: float) -> None:
+    assert settings({}, shape).penalty == stiffer * settings({}, Sphere(1.0)).penalty
+    assert settings({"penalty": 7.0}, shape).penalty == 7.0
 
 
 @pytest.mark.parametrize("asked", [[2e-3], [2e-3, 1.9e-3], [1e-3, 2e-3]])

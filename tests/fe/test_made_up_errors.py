@@ -13,7 +13,7 @@ from scipy.special import beta, betainc
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import CAUSES, Budget, Causes
-from fe_contact.budget.certify import ABOUT_A_STEP, Trust, _rows, _time_steps, trust
+from fe_contact.budget.certify import ABOUT_A_STEP, Trust, _by_mesh, _rows, _time_steps, trust
 from fe_contact.budget.curve import Curve, extrapolated, squared_radius
 from fe_contact.budget.several import _error, _flight, _late
 from fe_contact.budget.variation import RIPPLED, SAFETY, STEEPER, Softening, Variation
@@ -556,6 +556,23 @@ def test_a_force_that_changes_in_one_place_is_as_well_known_as_before_far_from_t
     band = Variation(TRUTH, other, 1.0).force(np.array([0.1, 0.46, 0.5, 0.54, 0.9]))
     assert band[1:-1].min() > 0.5 * band.max()
     assert band[[0, -1]].max() < 1e-3 * band.max()
+
+
+@pytest.mark.parametrize("follows", [True, False])
+def test_a_mesh_that_stays_is_trusted_less_than_one_that_follows_the_contact(follows: bool, settings: Numerics) -> None:
+    """Errors of order two where the mesh follows; where the edge falls anywhere the root of the pressure leaves 3/2."""
+    order = 2.0 if follows else 1.5
+    numerics = settings.varied(order=4, elements_per_contact=4.0)
+
+    def run(one: Numerics) -> Curve:
+        wrong = 1e-3 * (4.0 / one.elements_per_contact) ** order
+        return made_up(STEPS, lambda share: wrong * share)
+
+    _, change = _by_mesh(run, numerics, numerics, follows, {})
+    assert change is not None
+    off = np.abs(run(numerics).dense.impulse - TRUTH.dense.impulse).max()
+    assert change.errors["impulse"] == pytest.approx(SAFETY * off, rel=1e-3)
+    assert (change.unresolved is None) == follows, "no order shows in a force that jitters"
 
 
 @pytest.mark.parametrize("trusted", [0.5, 5.0])

@@ -261,6 +261,15 @@ def test_the_bars_of_a_power_law_hold_whatever_the_signs_of_the_errors_and_no_mo
         assert 0.9 < max(ratios) < 1.0 + 1e-9, name
 
 
+@pytest.mark.parametrize("worst", [0.3, 0.9])
+def test_the_bars_of_a_power_law_hold_however_little_is_known_of_a_force(worst: float) -> None:
+    """Which may be so much larger than it seems, and as much smaller over one less of it."""
+    depth, error = np.geomspace(1e-4, 1e-2, 3), np.array([0.01, 0.01, worst])
+    found = power_law(depth, 3.0 * depth**1.4 * np.array([1.0, 1.0, 1.0 - worst]), error, 1.4)
+    assert abs(found["alpha"].value - 1.4) <= found["alpha"].error
+    assert abs(found["D_at_alpha"].value - 3.0) <= found["D_at_alpha"].error
+
+
 def test_the_bars_of_what_finite_spheres_add_hold_whatever_the_signs_of_the_errors_and_no_more() -> None:
     x, true, off = np.geomspace(0.01, 0.1, 5), {"c": 0.3, "k": -0.2, "d": 0.7}, defaultdict(list)
     whole, error = x * (true["c"] + true["k"] * np.log(x) + true["d"] * x), 1e-3 * np.linspace(0.5, 1.0, 5)

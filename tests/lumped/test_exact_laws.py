@@ -22,6 +22,7 @@ from lumped.result.history import End
 from lumped.scene.tables import Motion
 from lumped.shapes.cone import Cone
 from lumped.shapes.power import PowerProfile
+from lumped.shapes.sphere import Sphere
 from lumped.solvers.hereditary.pieces import alone
 from lumped.solvers.mdr.nest import REST, Adaptive, Grid, Nest, Prescribed, coarse, limit, predicted_turn, problem_of
 from lumped.solvers.mdr.row import SERIES_BELOW, Instant, fading
@@ -379,3 +380,11 @@ def test_only_a_dashpot_under_what_is_neither_cone_nor_parabola_needs_another_st
     shape = PowerProfile(1.0, power)
     assert _hereditary.problem_of(impact(1.0, viscosity=0.3, shape=shape)).rises_steeply == (power not in (1.0, 2.0))
     assert not _hereditary.problem_of(impact(1.0, (0.5,), (0.3,), shape=shape)).rises_steeply
+
+
+def test_a_sphere_begins_as_the_parabola_that_it_is_at_its_tip(impact: Callable[..., Scene]) -> None:
+    """Whatever it becomes at the depths of the impact."""
+    problem = _hereditary.problem_of(impact(1.0, viscosity=0.3, shape=Sphere(1.0)))
+    _, (near, far) = problem.loads(np.array([1.0, 4.0]))
+    assert abs(np.log2(far / near) - 1.0) > 1e-4, "the slope of a load d^(3/2) goes as the root of d"
+    assert not problem.rises_steeply

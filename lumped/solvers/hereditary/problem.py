@@ -135,7 +135,7 @@ class Hereditary:
         """
         if not self.modulus.viscosity:
             return False
-        _, (near, far) = self.loads(SHALLOW * np.array([1.0, 4.0]) * self.shortest)
+        _, (near, far) = self.loads(SHALLOW * np.array([1.0, 4.0]))
         power = float(np.log2(far / near))
         return abs(power - round(power)) > WHOLE
 
