@@ -60,7 +60,7 @@ def _plot(study: TransferStudy, key: str, where: Path, name: str) -> tuple[Path,
         panels = sheet.panels(count, COLUMNS, 0.078, 0.845, wspace=0.74, hspace=BETWEEN / PANEL)
         for i, (axes, quantity) in enumerate(zip(panels, QUANTITIES, strict=False)):
             _deviations(axes, [row for row in rows if row.quantity == quantity])
-            style.label(axes, chr(ord("a") + i), quantity.replace("_", " "))
+            style.label(axes, chr(ord("a") + i), f"{quantity.replace('_', ' ')} (linear to {LINEAR:g})")
             _states(axes, study, key, rows)
         _ranges(panels[len(QUANTITIES)], study, key, rows)
         style.label(panels[len(QUANTITIES)], chr(ord("a") + len(QUANTITIES)), "all within")
@@ -115,7 +115,7 @@ def _deviations(axes: Axes, rows: Sequence[TransferRow]) -> None:
     known = np.concatenate([deviation for _, deviation in curves.values()] or [np.zeros(1)])
     most = min(1.5 * max(float(np.nanmax(np.abs(known), initial=0.0)), 1.2 * LINEAR), MOST)
     absolute = any(row.quantity == "restitution" for row in rows)
-    axes.set(ylim=(-most, most), ylabel=f"{'hundredths' if absolute else 'deviation, %'} (linear to {LINEAR:g})")
+    axes.set(ylim=(-most, most), ylabel="difference, hundredths" if absolute else "deviation, %")
     for level in LEVELS:
         for sign in (-1.0, 1.0):
             axes.axhline(sign * 100.0 * level, color=style.GREY, linewidth=0.35, alpha=0.6, zorder=0)
