@@ -60,6 +60,12 @@ class ImpactModel:
     fe: Callable[[Scene, Given, Progress], Result]
 
 
+def planned(scene: Scene, given: Given, progress: Progress, plan: Callable[[Scene, Given], Plan]) -> Plan:
+    """Settings and ledger; the steps of what is run for them are told. Raises NotReached."""
+    with counting_steps(Count.of(progress, "what to expect of the contact", 0.0)):
+        return plan(scene, given)
+
+
 def solved(
     scene: Scene,
     given: Given,
@@ -69,8 +75,7 @@ def solved(
 ) -> SolvedBy[AnyAnswer]:
     """Plan, certify, refine until the bars meet the tolerance or nothing is left to refine. Raises NotReached."""
     clock = Clock()
-    with counting_steps(Count.of(progress, "what to expect of the contact", 0.0)):
-        chosen = plan(scene, given)
+    chosen = planned(scene, given, progress, plan)
     way = way_of(scene, chosen, progress)
     found, refused = refine(way, chosen.numerics)
     chosen = replace(chosen, ledger=way.ledger(found))

@@ -8,10 +8,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
-from fe_contact.progress import Count
 from fe_contact.settings import KEYS, SCALES
 from lumped.errors import FeContactError, NotReached
-from lumped.progress import counting_steps
 from lumped.result.result import LedgerEntry, good_to
 from lumped.scene.scene import Scene
 from lumped.schema import Table
@@ -27,6 +25,7 @@ def execute(args: argparse.Namespace) -> int:
 
     An exact law is asked, in milliseconds; finite elements only with --measure, or where a material softens.
     """
+    from fe_contact.budget.solved import planned
     from fe_contact.methods import lines_of, settings, weigh
     from fe_contact.reference import plan
 
@@ -42,8 +41,7 @@ def execute(args: argparse.Namespace) -> int:
         nothing: Table = {"numerics": None, "model_ledger": [], "cost": None, "refused": None}
         base.say(args, methods | nothing, lines, title)
         return base.DONE
-    with counting_steps(Count.of(progress, "what to expect of the contact", 0.0)):
-        chosen = plan(scene, given)
+    chosen = planned(scene, given, progress, plan)
     takes, refused = _takes(scene, chosen, given)
     measured = _measured(args, scene, given)
     ledger = [entry.to_json(float(chosen.numerics.tolerance)) for entry in chosen.ledger]

@@ -73,7 +73,7 @@ class Fit:
         return self.summary()
 
     def _repr_html_(self) -> str:
-        table = html_table((self.law, "value, 95 % interval"), {**self.parameters, **self.held}.items())
+        table = html_table((self.law, "value, interval"), {**self.parameters, **self.held}.items())
         return f"{table}<p>normalized error {self.error_in_words}</p>{self.plot().svg}"
 
     def plot(self) -> Picture:
