@@ -207,7 +207,7 @@ class Correspondence(HereditaryLaw):
     def simulation(self, scene: Scene, tolerance: float) -> Followed[Result]:
         """The impacts of a scene to this tolerance; several, or another exit, in steps. Raises NotReached."""
         if self.exit == "force" and scene.motion.impacts == 1:
-            return (yield from simulation(self.name, scene, tolerance, solve))
+            return (yield from simulation(self.name, scene, tolerance, solve, _lost_in_rounding))
         return law_of(scene, self.exit, self.memory).simulate(scene, tolerance)
 
 
@@ -252,6 +252,12 @@ def solve(problem: Hereditary, end_time: float, settings: Settings, before: Cour
         return Course(phases, End.TIME, steps, inward, closing)
     last = HereditaryPhase(closing.last, UntilEnd(closing.end), DEPTH, DEPTH)
     return Course((*phases, last), End.SEPARATED, steps, inward, closing)
+
+
+def _lost_in_rounding(problem: Hereditary, course: Course) -> tuple[dict[str, float], float]:
+    """Of the duration, s: the force of an elastic cone falls as a square, whose zero is known to a root; of it none."""
+    outward = course.outward
+    return {"duration": outward.blur * problem.scales.time} if isinstance(outward, Closing) else {}, 0.0
 
 
 def _phase(path: Path) -> HereditaryPhase:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from unittest.mock import patch
 
 import numpy as np
 import pytest
+from scipy.special import beta
 
 from lumped import Scene, laws, simulate
 from lumped.load_curves.bent import BentCurve
+from lumped.shapes.cone import Cone
 from lumped.solvers.point import phase
 from lumped.solvers.point.memory import StepLoad
 
@@ -73,3 +76,18 @@ def test_a_load_curve_is_asked_once_for_each_trial_of_depths() -> None:
     slopes = np.array([(load.force(depth + row, rate) - load.force(depth - row, rate)) / 2e-9 for row in shift]).T
     assert over_depth == pytest.approx(slopes, rel=1e-4, abs=1e-4 * float(np.abs(slopes).max()))
     assert memories.shape == (1, 8)
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-7, 1e-10])
+@pytest.mark.parametrize("angle", [11.0, 27.3, 61.7])
+def test_the_end_of_a_force_that_falls_as_a_square_is_known_to_the_root_of_rounding(
+    angle: float, tolerance: float, impact: Callable[..., Scene]
+) -> None:
+    """An elastic cone's contact lasts 2 depth/v times the integral of dx/sqrt(1 - x^3) over (0, 1)."""
+    scene = impact(shape=Cone(angle))
+    found = simulate(laws.correspondence.of(scene), scene, tolerance)
+    duration, depth = found.quantities["duration"], found.quantities["peak_depth"]
+    exact = 2.0 / 3.0 * beta(1.0 / 3.0, 0.5) * (depth.value or 0.0) / scene.velocity
+    assert abs((duration.value or 0.0) - exact) <= (duration.error or 0.0)
+    assert (duration.error or 1.0) < 1e-8 * exact
+    assert found.converged is (tolerance > 1e-9)

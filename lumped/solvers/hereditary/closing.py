@@ -30,13 +30,15 @@ TRIES = 12  # work: guesses of the last piece's duration
 SAME, ROUNDED = 1e-11, 1e-7
 # A duration is near that changes by no more than this share.
 NEAR = 0.1
+LOST = float(np.finfo(float).eps)  # rounding: of the largest force
 
 
 @dataclass(frozen=True)
 class Closing:
     """The path over r before the last piece (None: there is none) and that piece over q, which ends at `end`.
 
-    Without a last piece the path has reached the end time. `steep`: dF/dy at the end.
+    Without a last piece the path has reached the end time. `steep`: dF/dy at the end; `blur`: by how much the end moves
+    with a force as small as is lost in rounding.
     """
 
     path: Path | None
@@ -44,6 +46,7 @@ class Closing:
     end: float
     steep: float
     steps: int
+    blur: float = 0.0
 
 
 def close(
@@ -68,9 +71,7 @@ def close(
         earlier, state = _before(path, begin), path.state(begin)
         guess, last = _guess(problem, begin, state, settings, zero, hoped), None
         if 0.0 < guess.duration < math.inf:
-            last = yield from shut(
-                problem, state, guess, settings, NEARLY_CLOSED * settings.rtol, settings.rtol * largest
-            )
+            last = yield from shut(problem, state, guess, settings, NEARLY_CLOSED * settings.rtol, largest)
         hoped = _closing(earlier, begin, last, steps) if last else None
         if last and hoped and last.fits and hoped.end <= end_time:
             return hoped
@@ -94,7 +95,7 @@ def _again(
         more = yield from follow(problem, span, state, begin - path.end, _released, settings, largest, before.path)
         path, steps = path.joined(more.path), more.steps
     state, guess = path.state(begin), Guess.of(before.end - begin**2, over, before.steep, settings)
-    last = yield from shut(problem, state, guess, settings, CLOSED, settings.rtol * largest)
+    last = yield from shut(problem, state, guess, settings, CLOSED, largest)
     if last is None or not last.fits:
         return None
     return _closing(_before(path, begin), begin, last, steps)
@@ -110,7 +111,7 @@ def _guess(
 
 
 def _closing(path: Path | None, begin: float, last: Shut, steps: int) -> Closing:
-    return Closing(path, last.path, begin**2 + last.duration, last.steep, steps + last.steps)
+    return Closing(path, last.path, begin**2 + last.duration, last.steep, steps + last.steps, last.blur)
 
 
 def _released(values: Array) -> bool:
@@ -155,23 +156,26 @@ class Guess(NamedTuple):
 
 
 class Shut(NamedTuple):
-    """A last piece over q, its duration, dF/dy there, all Newton steps, and whether it errs by no more than allowed."""
+    """A last piece over q, its duration, dF/dy at its end, all Newton steps, whether it `fits`: errs as allowed; `blur`
+    as of :class:`Closing`.
+    """
 
     path: Path
     duration: float
     steep: float
     steps: int
     fits: bool
+    blur: float
 
 
 def shut(
-    problem: Hereditary, state: Array, start: Guess, settings: Settings, close: float, allowed: float
+    problem: Hereditary, state: Array, start: Guess, settings: Settings, close: float, largest: float
 ) -> Followed[Shut | None]:
     """The piece from a state that ends with F = 0, its duration found to the relative change `close`.
 
     That ends where the force of a first, longer one falls to zero; from there on, or where it does not, by secants.
-    One that will err by more than `allowed` is not sought any closer, and is None where its end is not near yet, as it
-    is where Newton's steps fail, and from a depth whose load is lost in rounding.
+    One that will err by more than is allowed of the `largest` force is not sought any closer, and is None where its end
+    is not near yet, as it is where Newton's steps fail, and from a depth whose load is lost in rounding.
     """
     load, slope = (float(value[0]) for value in problem.loads(state[:1]))
     if not load:
@@ -192,12 +196,13 @@ def shut(
         steep, zero = (now.steep(before) or steep, None) if before else (steep, path.fall(FORCE))
         change = now.lasts(steep, power) if zero is None else -(zero**2)
         longer = min(max(1.0 + change / duration, 0.5), 2.0)
-        fits = error * longer**settings.points <= allowed  # a tail falls with the length
+        fits = error * longer**settings.points <= settings.rtol * largest  # a tail falls with the length
         rounded = max(abs(change), missed) <= ROUNDED * duration and abs(change) > 0.5 * missed
         if not fits and abs(change) > NEAR * duration:
             return None
         if abs(change) <= close * duration or rounded or not fits:
-            return Shut(path, duration if fits else longer * duration, steep, steps, fits)
+            blur = now.blur(steep, power, LOST * largest)
+            return Shut(path, duration if fits else longer * duration, steep, steps, fits, blur)
         before, missed = now, abs(change) if before else math.inf
         guess = Guess.within(longer * duration, path, steep, settings)
         duration = guess.duration
@@ -231,6 +236,12 @@ class _Fallen(NamedTuple):
             return math.copysign(math.inf, self.force)
         load = self.load - self.force / steep
         return (math.copysign(abs(load) ** (1.0 / power), load) - self.depth) / self.velocity
+
+    def blur(self, steep: float, power: float, lost: float) -> float:
+        """By how much a force that is lost moves the end: little where it falls straight, much where it falls flat."""
+        load = abs(self.load)
+        deeper = (load + lost / steep) ** (1.0 / power) - load ** (1.0 / power)
+        return deeper / abs(self.velocity) if self.velocity else math.inf
 
 
 def _power(depth: float, load: float, slope: float) -> tuple[float, float]:
