@@ -87,6 +87,31 @@ def test_a_run_of_today_agrees_with_what_is_published(campaign_size: Callable[[i
         assert one.agrees, one.line
 
 
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_a_published_history_says_what_made_it(name: str) -> None:
+    """Versions of all that computes, and the imprint of each mesh: none of a law, a bar or a rod, which need none."""
+    found = Reference.read(folder(), name)
+    assert found is not None
+    made = found.content["provenance"]
+    assert all(made[package][0].isdigit() for package in ("fe-contact", "numpy", "scipy", "scikit-fem", "gmsh"))
+    assert len({mesh["sha256"] for mesh in made["meshes"]}) == len(made["meshes"]), "made once, however often used"
+    scene = found.content["scene"]
+    meshed = found.content["method"] == "fe" and scene["target"]["shape"] not in {"bar", "rod"}
+    assert bool(made["meshes"]) is meshed
+
+
+def test_a_scene_is_meshed_alike_each_time_and_as_published_where_all_else_is_the_same() -> None:
+    published = Reference.read(folder(), "steel-ball")
+    assert published is not None
+    first, again = renewed(["steel-ball", "steel-ball"], folder())
+    assert first.result is not None
+    assert first.meshes
+    assert first.meshes == again.meshes
+    known = published.content["provenance"]
+    if first.result.provenance == {key: known[key] for key in first.result.provenance}:
+        assert [vars(mesh) for mesh in first.meshes] == known["meshes"]
+
+
 @pytest.fixture(scope="module")
 def result() -> Result:
     scene = Scene.load("steel-ball")

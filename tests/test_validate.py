@@ -304,6 +304,11 @@ class Links(HTMLParser):
 
 def test_the_page_needs_nothing_but_itself_and_its_links_lead_somewhere(make: Make) -> None:
     folder, _, _ = make()
+    links_lead_somewhere(folder)
+
+
+def links_lead_somewhere(folder: Path) -> None:
+    """To a place of the page, of a name that stands there once, or to a file; nothing is loaded from elsewhere."""
     page = (folder / "index.html").read_text(encoding="utf-8")
     found = Links()
     found.feed(page)
@@ -316,6 +321,11 @@ def test_the_page_needs_nothing_but_itself_and_its_links_lead_somewhere(make: Ma
 
 
 # in a browser
+
+
+needs_a_browser = pytest.mark.skipif(
+    WAITS_FOR_NOBODY, reason="no Chromium here; on CI, where CI is set, it has to be there"
+)
 
 
 @pytest.fixture
@@ -337,25 +347,45 @@ axe.run(document, { resultTypes: ["violations"] }).then(found => found.violation
 """
 
 
-@pytest.mark.skipif(WAITS_FOR_NOBODY, reason="no Chromium here; on CI, where CI is set, it has to be there")
+@needs_a_browser
 def test_a_browser_shows_it(make: Make, browser: Any) -> None:
     folder, _, _ = make()
+    assert shows_all(browser, folder) == 4
+    sorts_and_filters(browser)
+    switches(browser)
+    reads_values_off(browser)
+    prints(browser)
+    assert browser.said == []
+
+
+@needs_a_browser
+def test_a_browser_shows_sections_as_they_are(tmp_path: Path, browser: Any, request: pytest.FixtureRequest) -> None:
+    """Nothing here is made up: a quick report, of its quickest sections but with --full."""
+    some = [] if request.config.getoption("--full") else ["--sections", "damper,restitution"]
+    folder = tmp_path / "report"
+    main(["validate", "--quick", "--quiet", "--out", str(folder), *some])
+    links_lead_somewhere(folder)
+    assert shows_all(browser, folder) >= 2
+    prints(browser)
+    assert browser.said == []
+
+
+def shows_all(browser: Any, folder: Path) -> int:
+    """How many figures, at every width, in both colours: none without a size, no page wider than the window."""
+    counted = set()
     for scheme in ("light", "dark"):
         browser.prefer(scheme)
         for width in BROWSER["WIDTHS"].values():
             browser.resize(width)
             browser.open(folder / "index.html")
             seen = browser.run(FIGURES)
-            assert len(seen) == 4
             assert all(seen), width
             assert browser.run("document.documentElement.scrollWidth <= innerWidth"), f"wider than {width}"
+            counted.add(len(seen))
         browser.run((TESTS / "vendor" / "axe.min.js").read_text(encoding="utf-8") + ";0")
         assert browser.run(AXE) == []
-    sorts_and_filters(browser)
-    switches(browser)
-    reads_values_off(browser)
-    prints(browser)
-    assert browser.said == []
+    (count,) = counted
+    return count
 
 
 def sorts_and_filters(browser: Any) -> None:

@@ -17,6 +17,8 @@ from pathlib import Path
 import numpy as np
 
 from fe_contact import __version__
+from fe_contact.assembly.cache import forget
+from fe_contact.assembly.disk_cache import without_disk
 from fe_contact.methods import simulate
 from fe_contact.progress import Progress, silent
 from fe_contact.studies.files import Line, require_parquet, write_parquet, write_study
@@ -32,6 +34,7 @@ from lumped.schema import Table
 from lumped.schema.csv_file import write_columns, write_csv
 from lumped.schema.files import SCENES, data_folder
 from lumped.schema.json_file import write_json
+from meshes.triangles import Imprint, imprints
 
 PACKAGE, RECORD = "datapackage.json", "references.json"
 SCHEMA = "fe-contact/references/1"
@@ -39,7 +42,7 @@ DIGITS, ROUNDING = (
     9,
     1e-8,
 )  # of a history as it is written, and what it may move a force by: below every bar of elements
-OURS = ("timing", "work", "provenance")  # of a result: what another machine has otherwise
+OURS = ("timing", "work")  # of a result: what another machine has otherwise
 UNITS = {"_per_s": "m/s", "_s": "s", "_m": "m", "_N": "N"}  # by the end of a column's name, the longest first
 
 
@@ -88,13 +91,17 @@ class Move:
 
 @dataclass(frozen=True, eq=False)
 class Renewal:
-    """A scene answered again: the result, None where nothing may be published and `reason` says why; what moved."""
+    """A scene answered again: the result, None where nothing may be published and `reason` says why; what moved.
+
+    `meshes`: imprints of all that it was answered on.
+    """
 
     scene: str
     result: Result | None
     moves: tuple[Move, ...]
     is_new: bool
     reason: str = ""
+    meshes: tuple[Imprint, ...] = ()
 
     @property
     def agrees(self) -> bool:
@@ -138,14 +145,22 @@ def renewed(names: Sequence[str], published: Path, progress: Progress = silent) 
         older = Reference.read(published, name)
         try:
             scene, settings = load(Scene, name)
-            result = simulate(scene, None, settings)
+            result, meshes = _afresh(scene, settings)
         except FeContactError as failure:
             yield Renewal(name, None, (), older is None, str(failure))
             continue
         if result.converged:
-            yield Renewal(name, result, moves(name, older, result), older is None)
+            yield Renewal(name, result, moves(name, older, result), older is None, meshes=meshes)
         else:
             yield Renewal(name, None, (), older is None, result.message)
+
+
+def _afresh(scene: Scene, settings: Table) -> tuple[Result, tuple[Imprint, ...]]:
+    """A scene's answer with nothing at hand, and the imprints of all meshes that were made for it."""
+    forget()
+    with without_disk(), imprints() as made:
+        result = simulate(scene, None, settings)
+    return result, tuple(made)
 
 
 def moves(name: str, older: Reference | None, newer: Result) -> tuple[Move, ...]:
@@ -207,7 +222,8 @@ def _write_scene(renewal: Renewal, where: Path) -> None:
     assert result is not None
     write_columns(where / f"{renewal.scene}.csv", *_table(result.history))
     content = {key: value for key, value in result.to_json().items() if key not in OURS}
-    write_json(where / f"{renewal.scene}.json", content | {"suite": __version__})
+    made = {**result.provenance, "meshes": [asdict(mesh) for mesh in renewal.meshes]}
+    write_json(where / f"{renewal.scene}.json", content | {"suite": __version__, "provenance": made})
 
 
 def _table(history: History) -> tuple[tuple[str, ...], list[Array], int]:

@@ -20,6 +20,7 @@ from fe_contact.studies.validate.base import (
     Section,
 )
 
+DEPTHS = {"holds": "at all depths", "holds at one depth": "at one depth alone", "wrong": "at no depth"}  # by verdict
 FIGURES = (
     Figure("ring", "Force over the paper's row, and the local exponent, over depth", ("ring.csv",)),
     Figure("fig12", "Figure 12 again: the paper's ring struck", ("fig12.csv", "ring_impacts.csv")),
@@ -77,9 +78,9 @@ def make(asked: Request) -> Made:
 def headline(curves: Sequence[RingCurve], impacts: Sequence[RingStruck]) -> Headline:
     """For how many rings and impacts the paper's formulas hold."""
     words = Counter(verdict(curve).word for curve in curves)
-    pressed = ", ".join(f"{count} {word}" for word, count in words.items())
+    pressed = ", ".join(f"{where} for {words[word]}" for word, where in DEPTHS.items())
     held = sum(one.holds for one in impacts)
-    said = f"Of {len(curves)} rings pressed slowly, by the paper's (27)-(29): {pressed}"
+    said = f"Of {len(curves)} rings pressed slowly, the paper's (27)-(29) hold {pressed}"
     word = HOLDS if held == len(impacts) and set(words) == {"holds"} else DIFFERS
     return Headline(word, f"{said}; its (30)-(32) hold in {held} of {len(impacts)} impacts on them.")
 
