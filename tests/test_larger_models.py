@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -81,6 +82,13 @@ def test_run_says_which_effects_it_takes_in(tmp_path: Path, capsys: pytest.Captu
     )
     results = [json.loads((tmp_path / name / "result.json").read_text()) for name in ("given", "larger")]
     assert [result["model_sufficient"] for result in results] == [False, True]
+
+
+def test_a_law_that_leaves_out_what_is_taken_in_is_refused(refused: Callable[..., list[str]]) -> None:
+    yields = ["--set", "target.material.yield_strength=1e9", "--tolerance", "0.02", "--model", "sufficient"]
+    (line,) = refused("run", "steel-ball", "--method", "hertz", *yields)
+    assert "--model" in line
+    assert "model.plasticity, which hertz leaves out; accepted: --method fe" in line
 
 
 def test_what_is_measured_is_said_in_the_unit_of_the_ledger() -> None:

@@ -26,7 +26,7 @@ def _export(args: argparse.Namespace) -> int:
     references = published(checked(_names(args)))
     progress = base.progress_of(args)
     content = publish(where, lambda folder: write_for_others(references, form, folder, progress), RECORD)
-    base.say(args, content, [f"{len(references)} scenes written to {where}"])
+    base.say(args, content, [f"{len(references)} scene{'s' * (len(references) > 1)} written to {where}"])
     return base.DONE
 
 

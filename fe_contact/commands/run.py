@@ -11,11 +11,15 @@ from lumped.errors import BadInput, Fault, NotReached
 from lumped.result.folder import publish
 from lumped.result.result import Result, write_failure
 from lumped.scene.scene import Scene
+from lumped.scene.tables import Model
 from lumped.schema import Table
 
 if TYPE_CHECKING:  # finite elements are loaded when they are needed
     from fe_contact.plastic.fields import PressedAgain
     from fe_contact.reference import Solved
+
+
+EFFECTS = ("inertia", "kinematics", "plasticity")  # keys of the model that a larger one switches on
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -54,9 +58,19 @@ def _impact(args: argparse.Namespace, scene: Scene, table: Table, where: Path, t
         result, solved = answered(scene, settings(table, None, scene.source), base.progress_of(args))
     else:
         result, solved = simulate(scene, args.method, table, progress=base.progress_of(args)), None
+        if taken:
+            _check_taken(args.method, scene.model, result.model)
     content = publish(where, lambda folder: _write(args, solved, result, folder))
     title, *lines = result.summary().split("\n  ")
     return base.report(args, result, content, [*taken, *_weighed(result), *lines], where, title, scene.model)
+
+
+def _check_taken(method: str, asked: Model, answered: Model) -> None:
+    """Raises BadInput where a law leaves out an effect that the sufficient model takes in."""
+    names = [f"model.{name}" for name in EFFECTS if getattr(asked, name) != getattr(answered, name)]
+    if names:
+        reason = f"sufficient: that takes {', '.join(names)}, which {method} leaves out; accepted: --method fe"
+        raise BadInput(Fault("--model", "", reason))
 
 
 def _weighed(result: Result) -> list[str]:
