@@ -116,8 +116,11 @@ class HereditaryLaw(ABC):
         """One integration, where one of :func:`once` says all; None where contacts follow one another in steps."""
 
     @abstractmethod
-    def simulation(self, scene: Scene, tolerance: float) -> Followed[Result]:
-        """As `simulate`, by pieces that may be solved together with those of other impacts."""
+    def simulation(self, scene: Scene, tolerance: float, dense: bool = True) -> Followed[Result]:
+        """As `simulate`, by pieces that may be solved together with those of other impacts.
+
+        Not `dense`: the history has the rows of the integration alone.
+        """
 
     def simulate(self, scene: Scene, tolerance: float) -> Result:
         """The impacts of a scene to this tolerance. Raises NotReached."""
@@ -131,11 +134,11 @@ class Inexact(Protocol):
 
 
 def simulation(
-    name: str, scene: Scene, tolerance: float, solve: Solve, inexact: Inexact | None = None
+    name: str, scene: Scene, tolerance: float, solve: Solve, inexact: Inexact | None = None, dense: bool = True
 ) -> Followed[Result]:
     """Integrate tighter and tighter until every bar is within the tolerance. Raises NotReached.
 
-    No integration mends what is `inexact`, which the bars have on top.
+    No integration mends what is `inexact`, which the bars have on top. `dense` as in :class:`HereditaryLaw`.
     """
     clock, time = Clock(), scene.elastic_contact_time
     problem, last = problem_of(scene), scene.end_time / time
@@ -150,13 +153,13 @@ def simulation(
             break
         rtol *= NEXT
     errors, lost = inexact(problem, more) if inexact else ({}, 0.0)
-    for name, error in errors.items():
-        one = quantities[name]
-        quantities[name] = one if one.error is None else replace(one, error=one.error + error)
+    for known, error in errors.items():
+        one = quantities[known]
+        quantities[known] = one if one.error is None else replace(one, error=one.error + error)
     force_error += lost
     numerics = {"integrator": "Radau", "rtol": rtol, "points": MORE}
     work = {"force_evaluations": evaluations}
-    return assemble(name, scene, tolerance, fine, quantities, force_error, clock, numerics, work)
+    return assemble(name, scene, tolerance, fine, quantities, force_error, clock, numerics, work, dense=dense)
 
 
 def problem_of(scene: Scene) -> Hereditary:

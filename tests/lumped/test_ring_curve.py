@@ -131,7 +131,9 @@ def test_the_bars_of_ting_in_a_ring_grow_as_the_square_of_the_depth() -> None:
 def bars_in_a_ring(speed: float, young: Relaxation) -> dict[str, float]:
     """Relative, of what the rebound alone decides."""
     scene = Scene(Cylinder(0.006, 0.03), 0.05, speed, Material(young, 0.3), target=Ring(0.0068, 0.005))
-    found = simulate(laws.ting.of(scene), scene, 1e-8).quantities
+    result = simulate(laws.ting.of(scene), scene, 1e-8)
+    assert result.method == "ting"
+    found = result.quantities
     return {
         n: (found[n].error or 0.0) / (found[n].value or 1.0)
         for n in ("duration", "restitution", "impulse", "history_l2")
