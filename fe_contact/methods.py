@@ -74,11 +74,14 @@ def simulate(
 
 
 def simulation(scene: Scene, method: str, table: Given, tolerance: float | None = None) -> Followed[Result]:
-    """As :func:`simulate`, by pieces, where a law has them: those of many impacts are solved together."""
+    """As :func:`simulate`, by pieces, where a law has them: those of many impacts are solved together.
+
+    For quantities alone: the history of such a law has the rows of its integration, which may lie far apart.
+    """
     if method in OWN:
         return simulate(scene, method, table, tolerance)
     with faults_of(scene):
-        return (yield from _by_law(scene, method, settings(table, tolerance, scene.source)))
+        return (yield from _by_law(scene, method, settings(table, tolerance, scene.source), dense=False))
 
 
 def _lumped(scene: Scene, name: str, given: Given, progress: Progress) -> Result:
@@ -87,11 +90,11 @@ def _lumped(scene: Scene, name: str, given: Given, progress: Progress) -> Result
         return alone(_by_law(scene, name, given))
 
 
-def _by_law(scene: Scene, name: str, given: Given) -> Followed[Result]:
+def _by_law(scene: Scene, name: str, given: Given, dense: bool = True) -> Followed[Result]:
     """By a lumped law. Raises BadInput for an unknown name."""
     if reason := refusal(name):
         raise BadInput(Fault("--method", "", reason))
-    found = yield from by_law(laws.get(name).of(scene), scene, tolerance_of(given))
+    found = yield from by_law(laws.get(name).of(scene), scene, tolerance_of(given), dense)
     if scene.has_geometry:
         widest = float(found.history.contact_radius.max(initial=0.0))
         scene.check_sunk(found.quantities["peak_depth"].value or 0.0, widest)

@@ -101,33 +101,40 @@ def values_of(
     }
 
 
-def force_difference(fine: Answer, coarse: Answer) -> tuple[float, float]:
-    """Largest difference of the two forces over time, N, and its L2 norm over that of the force."""
-    t = np.sort(np.concatenate([fine.times, coarse.times]))
-    # Where the force jumps, at an end, the two know it to rounding: of times as close as that the first one counts.
-    t = t[np.append(True, np.diff(t) > ROUNDING * t[-1])]
-    force = fine.columns.force(t)
-    difference = force - coarse.columns.force(t)
-    steps = np.diff(t)
-    weights = 0.5 * (np.append(steps, 0.0) + np.append(0.0, steps))  # of the trapezoidal rule
-    norm = float(weights @ force**2)
-    return float(np.abs(difference).max()), math.sqrt(float(weights @ difference**2) / norm) if norm else 0.0
-
-
 def bars(fine: Answer, coarse: Answer, safety: float) -> tuple[dict[str, Quantity], float]:
     """The quantities of `fine`, each with `safety` times its distance from `coarse` as bar; the bar of F, N."""
-    worst, l2 = force_difference(fine, coarse)
+    times, near = _times_of_both(fine, coarse), _NearPeak.of(fine)
+    places = np.append(times, near.places)  # both are asked once for all of them
+    force = fine.columns.force(places)
+    missed = force - coarse.columns.force(places)
+    worst, l2 = _largest_and_norm(times, force[: times.size], missed[: times.size])
     quantities = {"history_l2": Quantity(0.0, safety * l2 + fine.rounding, "1")}
     for name, value in fine.values.items():
         other, error = coarse.values[name], None
         if value is not None:
             scale = 1.0 if name == "restitution" else abs(value)
             least = LEAST_SHARE * l2 + fine.rounding + ROUNDING_OF.get(name, 0.0)
-            apart = max(abs(value - (other or 0.0)), least * scale)
-            error = safety * (_shift(fine, coarse, value, apart) if name == "peak_time" else apart)
+            error = max(abs(value - (other or 0.0)), least * scale)
+            if name == "peak_time":
+                error = near.shift(force[times.size :], missed[times.size :], error)
+            error *= safety
         quantities[name] = Quantity(value, error, UNITS[name])
     peak = fine.values["peak_force"] or 0.0
     return {name: quantities[name] for name in UNITS}, safety * (worst + fine.rounding * peak)
+
+
+def _times_of_both(fine: Answer, coarse: Answer) -> Array:
+    """Their own rows; where the force jumps, at an end, the two know it to rounding: of times as close the first."""
+    t = np.sort(np.concatenate([fine.times, coarse.times]))
+    return np.asarray(t[np.append(True, np.diff(t) > ROUNDING * t[-1])])
+
+
+def _largest_and_norm(times: Array, force: Array, missed: Array) -> tuple[float, float]:
+    """Largest difference of two forces over time, N, and its L2 norm over that of the force."""
+    steps = np.diff(times)
+    weights = 0.5 * (np.append(steps, 0.0) + np.append(0.0, steps))  # of the trapezoidal rule
+    norm = float(weights @ force**2)
+    return float(np.abs(missed).max()), math.sqrt(float(weights @ missed**2) / norm) if norm else 0.0
 
 
 def wider(one: Mapping[str, Quantity], other: Mapping[str, Quantity]) -> dict[str, Quantity]:
@@ -135,29 +142,53 @@ def wider(one: Mapping[str, Quantity], other: Mapping[str, Quantity]) -> dict[st
     return {name: max(quantity, other[name], key=lambda known: known.error or 0.0) for name, quantity in one.items()}
 
 
-def _shift(fine: Answer, coarse: Answer, peak_time: float, least: float) -> float:
-    """By how much the peak may lie elsewhere, s: where the force falls short of it by less than what the two differ by
-    changes between here and there.
+@dataclass(frozen=True, eq=False)
+class _NearPeak:
+    """Where two forces are looked at to tell by how much the peak of the first may lie elsewhere.
 
-    Not sought any closer than the `least`; at most the whole contact; the least at touch, and at an end.
+    ``places``, s: AROUND the peak over a ``width``, and to both sides of it at ``reaches``, of which none is longer
+    than the ``whole`` contact, and at itself. None of all this at touch, and at an end.
     """
-    times = np.unique(fine.times)
-    i, whole = int(np.searchsorted(times, peak_time)), float(times[-1])
-    low, high = times[max(i - ROWS_AROUND, 0)], times[min(i + ROWS_AROUND, times.size - 1)]
-    if not low < peak_time < high:
-        return least
-    reaches = whole * SHRUNK ** np.arange(2.0 + max(math.log(least / whole, SHRUNK), 0.0))
-    sides = np.clip(peak_time + np.outer([-1.0, 1.0], np.append(reaches, 0.0)), 0.0, whole)
-    places = np.append(low + (high - low) * AROUND, sides)
-    force = fine.columns.force(places)
-    bent = -2.0 * float(BENDS @ force[: AROUND.size]) / (high - low) ** 2
-    if bent <= 0.0:
-        return max(whole, least)
-    apart = (force - coarse.columns.force(places))[AROUND.size :].reshape(sides.shape)[:, ::-1]
-    spread = np.maximum.accumulate(apart.max(axis=0)) - np.minimum.accumulate(apart.min(axis=0))
-    shifts = np.sqrt(2.0 * spread[:0:-1] / bent)  # the farthest that what they differ by within each reach allows
-    last = np.append(shifts[:-1] > reaches[1:], True).argmax()  # the next reach would be too short for it
-    return max(min(float(shifts[last]), whole), least)
+
+    whole: float
+    width: float
+    reaches: Array
+    places: Array
+
+    @classmethod
+    def of(cls, answer: Answer) -> _NearPeak:
+        """About the peak of an answer, as near as rounding lets it be known."""
+        times, peak = np.unique(answer.times), answer.values["peak_time"] or 0.0
+        i, whole = int(np.searchsorted(times, peak)), float(times[-1])
+        low, high = times[max(i - ROWS_AROUND, 0)], times[min(i + ROWS_AROUND, times.size - 1)]
+        if not low < peak < high:
+            return cls(whole, 0.0, np.empty(0), np.empty(0))
+        reaches = np.asarray(whole * SHRUNK ** np.arange(_count(ROUNDING_OF["peak_time"] * peak / whole)), dtype=float)
+        sides = np.clip(peak + np.outer([-1.0, 1.0], np.append(reaches, 0.0)), 0.0, whole)
+        return cls(whole, high - low, reaches, np.append(low + (high - low) * AROUND, sides))
+
+    def shift(self, force: Array, missed: Array, least: float) -> float:
+        """By how much the peak may lie elsewhere, s: where the force falls short of it by less than what is missed
+        changes between here and there; both at ``places``.
+
+        Not sought any closer than the `least`; at most the whole contact; the least at touch, and at an end.
+        """
+        if not self.places.size:
+            return least
+        bent = -2.0 * float(BENDS @ force[: AROUND.size]) / self.width**2
+        if bent <= 0.0:
+            return max(self.whole, least)
+        reaches = self.reaches[: _count(least / self.whole)]
+        sides = missed[AROUND.size :].reshape(2, -1)[:, [*range(reaches.size), -1]][:, ::-1]
+        spread = np.maximum.accumulate(sides.max(axis=0)) - np.minimum.accumulate(sides.min(axis=0))
+        shifts = np.sqrt(2.0 * spread[:0:-1] / bent)  # the farthest that what they differ by within each reach allows
+        last = np.append(shifts[:-1] > reaches[1:], True).argmax()  # the next reach would be too short for it
+        return max(min(float(shifts[last]), self.whole), least)
+
+
+def _count(share: float) -> int:
+    """Of reaches, until one is shorter than this share of the whole."""
+    return 2 + max(math.ceil(math.log(share, SHRUNK)), 0)
 
 
 def assemble(
@@ -171,13 +202,16 @@ def assemble(
     numerics: Table,
     work: Mapping[str, float],
     model: Model | None = None,
+    dense: bool = True,
 ) -> Result:
-    """The Result of one law: history dense enough for the tolerance, ledgers, and what it cost.
+    """The Result of one law: history, ledgers, and what it cost.
 
     `model` is the model as the law resolves it, where that is not the scene's with small displacements and
-    without inertia.
+    without inertia. The history is `dense` enough for the tolerance, or has the answer's own rows.
     """
-    times = densified(answer.rows(scene), answer.columns.force, max(tolerance, FINEST_ROWS))
+    times = answer.rows(scene)
+    if dense:
+        times = densified(times, answer.columns.force, max(tolerance, FINEST_ROWS))
     depth, velocity, force, radius = answer.columns(times)
     depth[0], velocity[0] = 0.0, scene.velocity  # the touch, which the polynomials know to rounding
     # The rows themselves add what linear interpolation errs by, less than the tolerance; the bar is for the

@@ -82,13 +82,16 @@ def simulate(model: Law, scene: Scene, tolerance: float = 1e-6) -> Result:
     return alone(simulation(model, scene, tolerance))
 
 
-def simulation(model: Law, scene: Scene, tolerance: float) -> Followed[Result]:
-    """As :func:`simulate`; by pieces, where a law has memory: those of many impacts are solved together."""
+def simulation(model: Law, scene: Scene, tolerance: float, dense: bool = True) -> Followed[Result]:
+    """As :func:`simulate`; by pieces, where a law has memory: those of many impacts are solved together.
+
+    Not `dense`: such a law's history has the rows of its integration alone, for quantities are all that is asked.
+    """
     if model.needs_mass:
         check_mass(scene)
     with scene.addressed():
         if isinstance(model, HereditaryLaw):
-            return (yield from model.simulation(scene, tolerance))
+            return (yield from model.simulation(scene, tolerance, dense))
         return model.simulate(scene, tolerance)
 
 

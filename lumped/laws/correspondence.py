@@ -204,10 +204,10 @@ class Correspondence(HereditaryLaw):
         """That which ends with the force."""
         return solve if self.exit == "force" else None
 
-    def simulation(self, scene: Scene, tolerance: float) -> Followed[Result]:
+    def simulation(self, scene: Scene, tolerance: float, dense: bool = True) -> Followed[Result]:
         """The impacts of a scene to this tolerance; several, or another exit, in steps. Raises NotReached."""
         if self.exit == "force" and scene.motion.impacts == 1:
-            return (yield from simulation(self.name, scene, tolerance, solve, _lost_in_rounding))
+            return (yield from simulation(self.name, scene, tolerance, solve, _lost_in_rounding, dense))
         return law_of(scene, self.exit, self.memory).simulate(scene, tolerance)
 
 

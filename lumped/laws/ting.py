@@ -43,9 +43,9 @@ class Ting(HereditaryLaw):
         """That of the whole contact."""
         return solve
 
-    def simulation(self, scene: Scene, tolerance: float) -> Followed[Result]:
+    def simulation(self, scene: Scene, tolerance: float, dense: bool = True) -> Followed[Result]:
         """One impact to this tolerance. Raises NotReached."""
-        return simulation(self.name, scene, tolerance, solve, bent)
+        return simulation(self.name, scene, tolerance, solve, bent, dense)
 
 
 def of(scene: Scene) -> Ting:

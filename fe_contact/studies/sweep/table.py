@@ -21,6 +21,7 @@ from lumped.schema.csv_file import write_csv
 from lumped.schema.json_file import plain, write_json
 
 SCHEMA = "fe-contact/sweep/1"
+UNDEFINED = None, None  # a value and its bar
 LEAST_RANKED = 3  # values of a key, or of a quantity, below which no rank says anything
 Truths = npt.NDArray[np.bool_]
 
@@ -45,21 +46,18 @@ class SweepTable:
     def of(cls, sweep: Sweep, rows: Iterable[tuple[int, Sequence[Table]]]) -> SweepTable:
         """Of rows by case, in any order, one a method."""
         shape = sweep.count, len(sweep.methods)
-        values, errors = np.full((2, *shape, len(UNITS)), np.nan)
+        pairs = np.full((*shape, len(UNITS), 2), np.nan)
         converged, refused = np.zeros((2, *shape), dtype=bool)
         reasons, cpu = dict[tuple[int, int], str](), 0.0
         for case, answered in rows:
             for method, row in enumerate(answered):
                 place = case, method
-                for quantity, name in enumerate(UNITS):
-                    value, error = row["values"].get(name, (None, None))
-                    values[(*place, quantity)] = np.nan if value is None else value
-                    errors[(*place, quantity)] = np.nan if error is None else error
+                pairs[place] = [row["values"].get(name, UNDEFINED) for name in UNITS]
                 converged[place], refused[place] = row["converged"], row["refused"]
                 if row["reason"]:
                     reasons[place] = row["reason"]
                 cpu += row["cpu_s"]
-        return cls(sweep, values, errors, converged, refused, reasons, cpu)
+        return cls(sweep, pairs[..., 0], pairs[..., 1], converged, refused, reasons, cpu)
 
     @cached_property
     def numbers(self) -> dict[str, Array]:
@@ -96,12 +94,12 @@ class SweepTable:
 
     def lines(self) -> Iterator[list[object]]:
         """Of the file: case by case, and method by method."""
+        pairs = np.stack([self.values, self.errors], axis=-1).reshape(*self.converged.shape, -1)
         for case in range(self.sweep.count):
             keys = [_cell(value) for value in self.sweep.overrides(case).values()]
             for place, method in enumerate(self.sweep.methods):
-                pairs = np.stack([self.values[case, place], self.errors[case, place]], axis=-1).ravel().tolist()
                 ended = bool(self.converged[case, place]), self.reasons.get((case, place), "")
-                yield [case + 1, *keys, method, *ended, *pairs]
+                yield [case + 1, *keys, method, *ended, *pairs[case, place].tolist()]
 
     def record(self, wall: float) -> Table:
         """What ``sweep.json`` says, ``wall`` s after the beginning."""
