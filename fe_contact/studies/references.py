@@ -160,7 +160,7 @@ def _afresh(scene: Scene, settings: Table) -> tuple[Result, tuple[Imprint, ...]]
     forget()
     with without_disk(), imprints() as made:
         result = simulate(scene, None, settings)
-    return result, tuple(made)
+    return result, tuple(dict.fromkeys(made))
 
 
 def moves(name: str, older: Reference | None, newer: Result) -> tuple[Move, ...]:
