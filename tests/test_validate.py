@@ -360,12 +360,12 @@ def test_a_browser_shows_it(make: Make, browser: Any) -> None:
 
 @needs_a_browser
 def test_a_browser_shows_sections_as_they_are(tmp_path: Path, browser: Any, request: pytest.FixtureRequest) -> None:
-    """Nothing here is made up: a quick report, of its quickest sections but with --full."""
-    some = [] if request.config.getoption("--full") else ["--sections", "damper,restitution"]
+    """Nothing here is made up: a quick report, of its quickest section alone but with --full."""
+    some = [] if request.config.getoption("--full") else ["--sections", "damper"]
     folder = tmp_path / "report"
     main(["validate", "--quick", "--quiet", "--out", str(folder), *some])
     links_lead_somewhere(folder)
-    assert shows_all(browser, folder) >= 2
+    assert shows_all(browser, folder) >= 1
     prints(browser)
     assert browser.said == []
 

@@ -67,7 +67,6 @@ RC: Any = {
     "savefig.dpi": 300,
     "svg.fonttype": "none",
     "svg.hashsalt": "fe-contact",
-    "path.simplify": False,
 }
 UNNAMED = "_child"  # how matplotlib begins the name of a line that was given none
 DRAWN = "{:.7g}"  # look: of a point
