@@ -72,6 +72,11 @@ class FreeKey:
         low, high = max(self.kind.low, value / REACH), min(self.kind.high, value * REACH)
         return self.to_place(self.kind.low if self.beside else low), self.to_place(high)
 
+    @property
+    def opened(self) -> tuple[bool, bool]:
+        """Which of the limits only end the search; beyond the others there is no value: none is less than none."""
+        return self.in_logarithm and not self.beside, self.in_logarithm
+
     def to_place(self, value: float) -> float:
         """Where a value is sought."""
         return math.log(value + self.beside) if self.in_logarithm else value

@@ -63,15 +63,16 @@ class LikelihoodProfile:
 
     @cached_property
     def _ends(self) -> Ends:
-        """What is sought is told itself, and a limit is the search's alone."""
+        """What is sought is told itself."""
         own, limits = np.eye(self.valley.sought.size), self.valley.limits
+        touches = [(True, True)] * len(self.histories.samples)
         return Ends(
             seen=lambda sought: (sought, self.histories.residuals(sought)),
             slopes=lambda sought: (own, self.histories.slopes(sought)),
             best=self.valley.sought,
             first=(own, self.slopes),
             limits=limits,
-            opened=np.ones(limits.shape, dtype=bool),
+            opened=np.array([*(key.opened for key in self.histories.keys), *touches]).T,
             most=self.most,
             bound=self.bound,
         )

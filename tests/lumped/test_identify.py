@@ -518,6 +518,25 @@ def test_a_spring_that_the_curves_do_not_need_is_named() -> None:
     assert not found.beyond
 
 
+def test_a_spring_that_may_be_none_opens_no_other_interval() -> None:
+    """Below none there is none: what else is told of a fluid taken for a solid is told to both sides."""
+    fluid = {"law": "maxwell", "E": 1e6, "eta": 1e3}
+    time, force = history_by_springs(scene(STRIKERS[0], fluid), {})
+    curve = curve_of(np.random.default_rng(SEED), time, force, 0.005 * np.random.default_rng(7).normal(size=ROWS))
+    table = scene(STRIKERS[0], {"law": "sls", "E1": 1e5, "E2": 1e6, "C1": 1e3})
+    found = identify({"curve": curve}, table, [f"target.material.{name}" for name in ("E1", "E2", "C1")]).parameters
+    spring = found["target.material.E1"]
+    assert spring.low is not None
+    assert spring.high is not None
+    assert spring.low < 1.0 < spring.high < 1e5
+    for name, value in (("E2", fluid["E"]), ("C1", fluid["eta"])):
+        one = found[f"target.material.{name}"]
+        assert one.low is not None
+        assert one.high is not None
+        assert one.high - one.low < value
+        assert abs(0.5 * (one.low + one.high) - value) < one.high - one.low
+
+
 def test_a_search_that_ends_before_the_likeliest_value_did_not_converge(monkeypatch: pytest.MonkeyPatch) -> None:
     """A mass guessed farther off than a search looks."""
     monkeypatch.setattr(free_keys, "REACH", 10.0)
