@@ -13,6 +13,7 @@ import argparse
 import errno
 import multiprocessing
 import os
+import re
 import signal
 import socket
 import sys
@@ -53,11 +54,26 @@ class Interrupted(KeyboardInterrupt):
 
 
 class OneLine(argparse.ArgumentParser):
-    """A parser that says what is wrong in one line, which no terminal obeys."""
+    """A parser that says what is wrong in one line, which no terminal obeys, and which known word is most like it."""
+
+    def parse_known_args(self, args=None, namespace=None):  # type: ignore[no-untyped-def]  # overloaded there
+        """As argparse does, but a command names its own unknown options."""
+        from lumped.errors import nearest
+
+        found, unknown = super().parse_known_args(args, namespace)
+        if unknown:
+            name, options = unknown[0], [one for action in self._actions for one in action.option_strings]
+            said = f"no option of this command{nearest(name.partition('=')[0], options)}"
+            self.error(f"{name}: {said if name.startswith('-') else 'a word more than this command takes'}")
+        return found, unknown
 
     def error(self, message: str) -> NoReturn:
-        from lumped.errors import SHOWN_OF_A_LINE, printable, shortened
+        from lumped.errors import SHOWN_OF_A_LINE, nearest, printable, shortened
 
+        if other := re.match(r"argument COMMAND: invalid choice: '(.*?)' \(", message):
+            from fe_contact.commands import COMMANDS
+
+            message = f"{other[1]}: no command{nearest(other[1], COMMANDS.names)}"
         self.exit(BAD_INPUT, f"{self.prog}: {shortened(printable(message), SHOWN_OF_A_LINE)}; see {self.prog} --help\n")
 
 

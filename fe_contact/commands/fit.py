@@ -182,8 +182,8 @@ MEMBER = base.Command(
         base.option(
             "--free",
             metavar="a,b,...",
-            help="what is found, others being held; default: stiffness and damping; to find the touch, s, too: "
-            "k,xi,touch, and of all laws: touch",
+            help="what is found, others being held; default: stiffness and damping; to find the touch, s, too, "
+            "name it beside them: k,xi,touch of jankowski; of all laws: touch",
         ),
         base.option("--fix", default="", metavar="a=v,...", help="parameters held at a value"),
         base.option("--bounds", default="", metavar="a=low:high,...", help="bounds of free parameters"),

@@ -71,10 +71,11 @@ class Space:
 def space_of(law: str, scene: Scene, free: Sequence[str] | None, fixed: Mapping[str, float], bounds: Bounds) -> Space:
     """The parameters asked for, checked; by default those that a law is known by. Raises BadInput, every fault."""
     scene.check_single("a fit")
-    known = {**network_keys(), **own_keys(law), TOUCH: TOUCH_KEY}
+    own = own_keys(law)
+    known = {**own, TOUCH: TOUCH_KEY, **{name: key for name, key in network_keys().items() if name not in own}}
     names = tuple(default_free(law, scene, fixed) if free is None else free)
     asked = [(FREE, name) for name in names] + [(FIXED, name) for name in fixed] + [(BOUNDS, name) for name in bounds]
-    faults = [_unknown(place, name, known) for place, name in asked if name not in known]
+    faults = [_unknown(place, name, law, known) for place, name in asked if name not in known]
     faults += [Fault(FREE, "", "empty; accepted: at least one parameter")] if not names else []
     faults += [Fault(FREE, name, UNSEEN[name]) for name in names if name in UNSEEN]
     faults += [Fault(FIXED, name, "both free and fixed; accepted: one of them") for name in names if name in fixed]
@@ -139,8 +140,11 @@ def _said(scene: Scene, law: str, chosen: Mapping[str, float]) -> Table:
     return {name: value for name, value in scene.law.values.items() if name not in dropped}
 
 
-def _unknown(place: str, name: str, known: Mapping[str, Number]) -> Fault:
-    return Fault(place, name, f"unknown parameter; accepted: {', '.join(known)}{nearest(name, tuple(known))}")
+def _unknown(place: str, name: str, law: str, known: Mapping[str, Number]) -> Fault:
+    own = [one for one in known if one in own_keys(law)]
+    others = ", ".join(one for one in known if one not in own)
+    accepted = f"of {law} {', '.join(own)}; {others}" if own else others
+    return Fault(place, name, f"unknown parameter; accepted: {accepted}{nearest(name, tuple(known))}")
 
 
 def _range_faults(place: str, name: str, value: float, key: Number) -> list[Fault]:

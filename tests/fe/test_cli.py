@@ -179,6 +179,25 @@ def test_a_wrong_command_line_is_bad_input(arguments: list[str], empty: Path) ->
     assert is_empty(empty)
 
 
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("rum polymer-sphere", "fe-contact: rum: no command; did you mean run?; see fe-contact --help"),
+        (
+            "run polymer-sphere --tolerence=1e-2",
+            "fe-contact run: --tolerence=1e-2: no option of this command; did you mean --tolerance?; "
+            "see fe-contact run --help",
+        ),
+        ("run a b", "fe-contact run: b: a word more than this command takes; see fe-contact run --help"),
+    ],
+)
+def test_a_misspelt_word_leads_to_the_one_it_resembles(
+    line: str, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert exit_code(*line.split()) == 2
+    assert capsys.readouterr().err == f"{said}\n"
+
+
 def test_an_unknown_method_names_the_nearest(empty: Path, scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert exit_code("run", str(scene), "--method", "mrd") == 2
     assert "did you mean mdr" in capsys.readouterr().err
