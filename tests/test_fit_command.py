@@ -163,6 +163,13 @@ def test_bad_scenes_and_curves_write_nothing(
     assert "cannot be read" in fault
 
 
+def test_a_file_that_is_not_there_leads_to_its_nearest(
+    curve: Path, body: Path, refused: Callable[..., list[str]]
+) -> None:
+    (line,) = refused("fit", str(curve.with_stem("jurve")), "--scene", str(body), "--law", "hertz")
+    assert f"No such file or directory; did you mean {curve}?; accepted: a CSV file" in line
+
+
 def test_what_is_not_reached_is_written_as_such(
     curve: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -39,7 +39,7 @@ MATERIALS: Mapping[str, Table] = {  # a polymer's numbers; a law that reads a fi
 }
 SECTIONS = {"model": keys_of(Model), "motion": keys_of(Motion), "numerics": optional(KEYS)}
 HEAD = (
-    "Written by fe-contact new; SI units. What stands behind a # may be left out; a value there is the default.",
+    "Written by fe-contact new; SI units. A line that begins with # may be left out; the value in it is the default.",
     "Editors complete keys after `fe-contact schema scene > scene-1.json` and a first line `#:schema ./scene-1.json`.",
 )
 

@@ -168,7 +168,8 @@ def _header(source: str, lines: Sequence[str]) -> CurveHeader:
             missing = [one for one, there in ((TIME, time), (FORCE, force)) if not there]
             if 0 < len(missing) < len(lacking):
                 nearest, lacking = separator.join(with_units), missing
-    said = f"missing column, with a header of {shown(nearest)}; accepted: time_s,force_N, or t [ms];F [kN] and the like"
+    header = f"with a header of {shown(nearest)}" if nearest else "of a file without a line"
+    said = f"missing column, {header}; accepted: time_s,force_N, or t [ms];F [kN] and the like"
     units = {one.plain: ", ".join(filter(str.isascii, one.units)) for one in lacking}
     raise BadInput(Fault(source, name, f"{said}, in {known}") for name, known in units.items())
 

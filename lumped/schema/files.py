@@ -40,10 +40,18 @@ def content(path: Path, most: int, kind: str) -> bytes:
             found = file.read(most + 1) or b""
     except (OSError, ValueError) as error:  # a name with a null byte is no value for open
         reason = error.strerror if isinstance(error, OSError) else "its name cannot be one"
-        raise BadInput(Fault(str(path), "", f"cannot be read: {reason or error}; accepted: {kind}")) from error
+        said = f"cannot be read: {reason or error}{_like(path) if isinstance(error, FileNotFoundError) else ''}"
+        raise BadInput(Fault(str(path), "", f"{said}; accepted: {kind}")) from error
     if len(found) > most:
         raise BadInput(Fault(str(path), "", f"larger than {most} bytes; accepted: {kind}"))
     return found
+
+
+def _like(path: Path) -> str:
+    """Which file of its kind beside it may be meant by a path that is none."""
+    with suppress(OSError):
+        return nearest(path.stem, {one.stem: str(one) for one in sorted(path.parent.glob(f"*{path.suffix}"))})
+    return ""
 
 
 def exists(path: Path) -> bool:

@@ -10,7 +10,7 @@ from lumped.schema.keys import Key, Number
 
 def of_springs(
     E1: Annotated[float, Key(MODULUS, "spring beside the dashpot")],
-    E2: Annotated[float, Key(MODULUS, "spring in a row with both: the instantaneous modulus")],
+    E2: Annotated[float, Key(MODULUS, "spring in series with these two: the instantaneous modulus")],
     C1: Annotated[float, Key(VISCOSITY, "dashpot beside the spring E1")],
 ) -> Relaxation:
     """E0 = E1 E2/(E1+E2), R1 = E2/E1, R2 = C1/E1, "(25)"."""
