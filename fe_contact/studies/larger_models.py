@@ -177,13 +177,13 @@ def sufficient(scene: Scene, given: Given) -> SufficientModel:
             return SufficientModel(scene, tuple(taken), left, tuple(undecided))
         entry = max(needed, key=lambda one: one.size)
         if not entry.key:
-            left[entry.effect] = f"about {entry.size:.2g}, {NO_KEY}: {entry.note}"
+            left[entry.effect] = f"about {percent(entry.size)} of the peak force, {NO_KEY}: {entry.note}"
             continue
         try:
             scene = _answered(scene.changed({entry.key: entry.value}), given)
             taken.append(entry)
         except FeContactError as refused:
-            left[entry.effect] = f"about {entry.size:.2g}; {refused}"
+            left[entry.effect] = f"about {percent(entry.size)} of the peak force, and cannot be taken in: {refused}"
 
 
 def _answered(scene: Scene, given: Given) -> Scene:
