@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
@@ -15,10 +15,11 @@ from hypothesis import strategies as st
 
 from lumped import BadInput, Motion, Scene, laws, restitution
 from lumped.result.result import RULED_ABSOLUTE, RULED_RELATIVE
+from lumped.numbers import Real
 from lumped.scene.tables import LawChoice, Model
-from lumped.solvers.point.bodies import TINY, Bodies, Stage
+from lumped.solvers.point.bodies import TINY, Bodies, PointLaw, Stage
 from lumped.solvers.point.contact import motion
-from lumped.solvers.point.track import FIVE, _top
+from lumped.solvers.point.track import FIVE, PointTrack, _top, peak_of
 
 OF_GEOMETRY = {"correspondence", "ting", "mdr", "rod_waves", "bar_waves"}
 NAMES = sorted(set(laws.available()) - OF_GEOMETRY)
@@ -520,3 +521,35 @@ def test_the_peak_of_a_quartic_force_is_its_top(top: float, lean: float) -> None
 def test_a_force_that_only_rises_or_falls_peaks_at_an_end(force: np.ndarray) -> None:
     for place, values in ((1.0, force), (0.0, force[::-1])):
         assert _top(values) == pytest.approx((place, force[-1]), abs=1e-13)
+
+
+@dataclass(frozen=True)
+class Hardening(PointLaw):
+    """F = k depth^3 + rate: it jumps to the velocity at touch, falls, and rises again."""
+
+    k: float
+    tensile = True
+
+    def force(self, depth: Real, rate: Real, stage: Stage) -> Real:
+        return self.k * depth**3 + rate
+
+    def tangents(self, depth: Real, rate: Real, stage: Stage) -> tuple[Real, Real]:
+        return 3.0 * self.k * depth**2, 1.0 + 0.0 * rate
+
+    def lost(self, depth: Real, rate: Real, stage: Stage) -> Real:
+        return rate
+
+    def stored(self, depth: float, stage: Stage) -> float:
+        return self.k * depth**4 / 4.0
+
+    def time_scale(self, bodies: Bodies) -> float:
+        return 1.0
+
+
+def test_a_force_that_jumps_at_touch_peaks_there_if_what_follows_is_hardly_lower() -> None:
+    """The point where the force of the first step is told first is lower than the second hump already."""
+    law = Hardening(5.08)
+    track = PointTrack(law, motion(law, Bodies(1.0, 1.0, 0.0), "force", 1, 100.0, 1e-5))
+    later = track(np.linspace(0.2, 1.5, 2001))[2].max()
+    assert track.motion.contacts[0].phases[0].steps[0].force[0] < later < 1.0
+    assert peak_of(track, track.motion.contacts[0]) == pytest.approx((0.0, 1.0), abs=1e-14)

@@ -106,12 +106,6 @@ class PointTrack:
     def _phases(self) -> list[PointPhase]:
         return [phase for contact in self.motion.contacts for phase in contact.phases]
 
-    def touching(self, one: Contact) -> float:
-        """The force when a contact begins, N."""
-        phase, start = one.phases[0], np.zeros(1)
-        depth, rate = start + max(one.first.depth, 0.0), start + one.first.rate
-        return float(self.law.between(phase.steps, np.zeros(1, dtype=np.intp), start, depth, rate, phase.stage)[0])
-
     def row(self, phase: PointPhase) -> PointRow:
         """The steps of one of its phases."""
         return self._rows[id(phase)]
@@ -201,7 +195,7 @@ def peak_of(track: PointTrack, one: Contact) -> tuple[float, float]:
     rising = force.argmax() == force.size - 1 and steps[i][1].last_slope(force) > 0.0
     k = i + 1 if rising and i + 1 < len(steps) else i
     phase, step = steps[k]
-    touch = track.touching(one)
+    touch = float(track.pressed(one.phases[0], np.array([one.start_time]))[2, 0])
     places = ends[k] - step.length * (1.0 - np.append(0.0, step.nodes.points))
     return max((one.start_time, touch), _vertex(track, phase, places), key=lambda peak: peak[1])
 
