@@ -241,6 +241,19 @@ def test_what_presses_one_body_is_found_again_at_every_node_of_it() -> None:
     np.testing.assert_allclose(found.pressure, pressure, rtol=1e-6)
 
 
+def test_what_presses_two_bodies_moves_each_by_its_own_modulus() -> None:
+    """Of one shape they yield as one body whose compliance is the sum; kept out exactly, the pressure is found again."""
+    operator = surface_operator(meshes.half_space(4.0, 20.0), 4, 0.3).operator
+    side = BodySide(operator, Relaxation(1.0), operator.trace)
+    one, two = stacked(operator, (side,), (1.0,)), stacked(operator, (side, side), (1.25, 5.0))
+    assert two.carriers is not None
+    pressure = two.carriers @ (1.5 + np.random.default_rng(13).uniform(-1.0, 1.0, two.carriers.shape[1]))
+    moved = two.displaced(operator.weights * pressure)
+    np.testing.assert_allclose(moved, one.displaced(operator.weights * pressure), rtol=1e-9)
+    found = exact.enforce(ContactProblem(two, moved, np.inf, 0.0), np.ones(pressure.size, dtype=bool))
+    np.testing.assert_allclose(found.pressure, pressure, rtol=1e-6)
+
+
 def bends(*radii: float) -> float:
     return sum(1.0 / radius for radius in radii)
 
