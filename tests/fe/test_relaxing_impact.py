@@ -16,8 +16,11 @@ from scipy.special import beta
 from fe_contact import reference, relaxing_impact, run
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.curve import Curve, extrapolated
-from fe_contact.relaxing_impact import Instant, Marcher, plan
-from fe_contact.settings import Numerics
+from fe_contact.budget.solved import ImpactModel
+from fe_contact.large_strains import ELASTIC
+from fe_contact.plastic.impact import YIELDING
+from fe_contact.relaxing_impact import RELAXING, Instant, Marcher, plan
+from fe_contact.settings import Numerics, WaveNumerics
 from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.relaxing import Fading, FadingLaw, Relaxing, doubled, green, second
 from fe_contact.steppers.steps import Strike
@@ -308,6 +311,21 @@ def test_what_does_not_relax_so_is_refused_by_its_key(key: str) -> None:
     scene = Scene.load("polymer-sphere", {**REFUSED[key], "model.kinematics": "finite"})
     with pytest.raises(BadInput, match=key):
         run(scene)
+
+
+@pytest.mark.parametrize(
+    ("name", "changes", "way"),
+    [
+        ("polymer-sphere", {}, reference.STATICS),
+        ("polymer-sphere", {"model.kinematics": "finite"}, RELAXING),
+        ("polymer-sphere-finite", {}, ELASTIC),
+        ("steel-ball-plastic", {}, YIELDING),
+    ],
+)
+def test_a_body_is_answered_as_its_model_and_material_ask(name: str, changes: dict[str, Any], way: ImpactModel) -> None:
+    """What is elastic by its load curve, a fifth of the work of a march; waves by settings of their own."""
+    assert reference.model_of(Scene.load(name, changes)) is way
+    assert isinstance(reference.plan(Scene.load("rod"), {}).numerics, WaveNumerics)
 
 
 def test_a_setting_of_waves_is_refused_by_its_key() -> None:
