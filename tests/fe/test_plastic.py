@@ -17,14 +17,15 @@ from skfem import MeshTri
 
 import fe_contact
 from fe_contact.assembly.forms import Array
-from fe_contact.errors import BodyTooFine
+from fe_contact.errors import BodyTooFine, MemoryTooSmall
 from fe_contact.indentation import indent
 from fe_contact.plastic import ground
 from fe_contact.plastic.course import Course, PlasticLoading, Varied, settings
 from fe_contact.plastic.fields import STRESS, PressedAgain
-from fe_contact.plastic.impact import SPRUNG, Answered, Rebound, _at_most, _release, pilot, plan
+from fe_contact.plastic.impact import SPRUNG, Answered, Rebound, Runner, _at_most, _release, pilot, plan
 from fe_contact.plastic.indent import _onwards
 from fe_contact.plastic.path import FIRST_RELEASED, RELEASED, PlasticFlowSlow, Presser, Station
+from fe_contact.progress import silent
 from fe_contact.settings import Numerics
 from fe_contact.solids.newton import MOST_ITERATIONS
 from fe_contact.steppers.steps import Work
@@ -576,6 +577,24 @@ def test_a_motion_that_ends_amid_the_contact_is_refused(known: Callable[..., Non
         ended = replace(scene, motion=replace(scene.motion, end_time=share * moves_as({}, scene)["duration"]))
         with pytest.raises(BadInput, match=r"motion\.end_time.*the contact lasts") if refused else nullcontext():
             fe_contact.run(ended, tolerance=1e-3)
+
+
+def test_an_impact_may_go_deeper_than_expected_and_ends_by_name_where_it_is_by_too_much(
+    known: Callable[..., None],
+) -> None:
+    """A sixth deeper its greatest depth lies amid forces still."""
+    known()
+    scene = Scene.from_dict(tables(mass=MASS, velocity=SLOW))
+    deepest = moves_as({}, scene)["peak_depth"]
+
+    def pressed_up_to(expected: float) -> float:
+        course = Course.of(scene, expected, expected)
+        runner = Runner(scene, course, silent)
+        return runner.motion(runner.pressed(settings(COARSE, course), False)[1]).deepest
+
+    assert pressed_up_to(deepest / 1.15) == pytest.approx(deepest, rel=1e-4)
+    with pytest.raises(MemoryTooSmall):
+        pressed_up_to(deepest / 1.3)
 
 
 def releases(power: float, steps: int, unit: float) -> tuple[Array, Array, float]:
