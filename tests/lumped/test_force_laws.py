@@ -14,6 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lumped import BadInput, Motion, Scene, laws, restitution
+from lumped.result.history import End
 from lumped.result.result import RULED_ABSOLUTE, RULED_RELATIVE
 from lumped.numbers import Real
 from lumped.scene.tables import LawChoice, Model
@@ -553,3 +554,24 @@ def test_a_force_that_jumps_at_touch_peaks_there_if_what_follows_is_hardly_lower
     later = track(np.linspace(0.2, 1.5, 2001))[2].max()
     assert track.motion.contacts[0].phases[0].steps[0].force[0] < later < 1.0
     assert peak_of(track, track.motion.contacts[0]) == pytest.approx((0.0, 1.0), abs=1e-14)
+
+
+@pytest.mark.parametrize("velocity", [1e-3, 1.0, 1e3])
+def test_bounces_are_followed_until_they_count_as_at_rest_beside_the_first_one(velocity: float) -> None:
+    """On spring and dashpot each leaves with one share of the last one's speed, down to 1e-6 of the first one's."""
+    e, bodies = 0.15, Bodies(MASS, velocity, 1e-9 * velocity)
+    law = laws.get("kelvin").of(scene("kelvin", velocity=velocity, e=e))
+    found = motion(law, bodies, law.exit, 20, math.inf, 1e-8).contacts
+    assert [one.first.rate / velocity for one in found] == pytest.approx([e**n for n in range(8)], rel=1e-5)
+
+
+def test_what_a_motion_does_not_reach_is_no_contact() -> None:
+    """Nothing follows a striker that rests, nor a touch that would come after the end."""
+    heavy = laws.get("kelvin").of(scene("kelvin", k=1e5, c=500.0))
+    (resting,) = motion(heavy, Bodies(MASS, 0.3, 9.81), heavy.exit, 3, math.inf, 1e-8).contacts
+    assert resting.end is End.REST
+    law, bodies = laws.get("hertz").of(scene("hertz")), Bodies(MASS, VELOCITY, 9.81)
+    _, second = motion(law, bodies, law.exit, 2, math.inf, 1e-8).contacts
+    for until, ends in ((0.999, [End.SEPARATED]), (1.0001, [End.SEPARATED, End.TIME])):
+        found = motion(law, bodies, law.exit, 3, until * second.start_time, 1e-8).contacts
+        assert [one.end for one in found] == ends
