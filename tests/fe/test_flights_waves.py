@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -208,3 +208,26 @@ def test_a_striker_that_leaves_between_two_steps_has_left_where_and_as_fast_as_i
     assert energy["in"] == pytest.approx(energy["out"])
     rest = {name: value for name, value in energy.items() if name not in ("in", "out")}
     assert np.array(list(rest.values())) == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("endless", [True, False])
+@pytest.mark.parametrize("elastic", [True, False])
+@pytest.mark.parametrize("gone", [True, False])
+def test_what_moves_in_an_endless_body_is_radiated_and_its_strain_with_it_once_nothing_else_can_take_it(
+    endless: bool, elastic: bool, gone: bool
+) -> None:
+    """Neither while the striker presses, nor where it still relaxes. A striker that yields keeps what it holds."""
+    mass, out, swinging, springs, moving_on, strained = 2.0, 0.81, 0.07, 0.03, 0.4, 0.2
+    held = Energies(2.0, out, swinging + moving_on, springs + strained, 0.01, 0.05, 0.1, 0.002)
+    here, none = np.array([-0.9 if gone else 0.9]), np.zeros(1)
+    last = Sample(1.0, 0.0 if gone else 3.0, 0.0, none, -here, none, none, here, held, 1)
+    body: Any = SimpleNamespace(endless=endless, in_striker=lambda state: (out + swinging, springs))
+    found = Motion((last,), cast("Any", None), 1)
+    material = SimpleNamespace(young=SimpleNamespace(is_elastic=elastic))
+    scene: Any = SimpleNamespace(reduced_mass=mass, geometry=SimpleNamespace(material=material))
+    energy = impact.energies(body, found, scene)
+    lost = (moving_on + (strained if elastic and gone else 0.0)) if endless else 0.0
+    assert energy["radiated"] == pytest.approx(0.1 + lost)
+    assert energy["stored"] == pytest.approx(swinging + springs + moving_on + strained - lost)
+    assert energy["out"] == pytest.approx(out)
+    assert energy["residual"] == pytest.approx(held.residual)
