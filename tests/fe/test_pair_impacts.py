@@ -242,7 +242,7 @@ def test_what_presses_one_body_is_found_again_at_every_node_of_it() -> None:
 
 
 def test_what_presses_two_bodies_moves_each_by_its_own_modulus() -> None:
-    """Of one shape they yield as one body whose compliance is the sum; kept out exactly, the pressure is found again."""
+    """Of one shape they yield as one body whose compliance is the sum; kept out exactly, the pressure returns."""
     operator = surface_operator(meshes.half_space(4.0, 20.0), 4, 0.3).operator
     side = BodySide(operator, Relaxation(1.0), operator.trace)
     one, two = stacked(operator, (side,), (1.0,)), stacked(operator, (side, side), (1.25, 5.0))

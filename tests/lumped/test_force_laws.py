@@ -14,9 +14,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lumped import BadInput, Motion, Scene, laws, restitution
+from lumped.numbers import Real
 from lumped.result.history import End
 from lumped.result.result import RULED_ABSOLUTE, RULED_RELATIVE
-from lumped.numbers import Real
 from lumped.scene.tables import LawChoice, Model
 from lumped.solvers.point.bodies import TINY, Bodies, PointLaw, Stage
 from lumped.solvers.point.contact import motion

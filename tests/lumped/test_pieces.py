@@ -16,7 +16,7 @@ from lumped.laws._hereditary import once
 from lumped.laws.base import simulation
 from lumped.numbers import Array
 from lumped.result.result import Result
-from lumped.solvers.hereditary.path import Path, chebyshev
+from lumped.solvers.hereditary.path import ByField, Path, chebyshev
 from lumped.solvers.hereditary.pieces import Followed, together
 
 
@@ -38,6 +38,17 @@ def test_a_path_says_the_same_of_one_place_and_of_many() -> None:
         assert path.samples(field) == pytest.approx(path.at(path.places)[field], rel=0.0, abs=1e-12)
     for i in (0, 77, 199):
         assert path.state(places[i]) == pytest.approx(whole[:, i], rel=0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("length", [1e-3, 1.0, 1e3])
+def test_a_time_that_begins_and_ends_as_a_square_is_placed_as_well_as_rounding_tells(length: float) -> None:
+    """t = s^2 (3 - 2 s) over the share s of the way, (2 + 3 x - x^3)/4 over x = 2 s - 1; places end at zero."""
+    series = reference.poly2cheb([0.5, 0.75, 0.0, -0.25])
+    clock = ByField(Path(np.array([-length, 0.0]), series[None, None], 0.0))
+    near = np.geomspace(1e-7, 0.5, 400)
+    share = np.concatenate([near, 1.0 - near])
+    found = clock.place(share**2 * (3.0 - 2.0 * share)) / length + 1.0
+    assert np.all(np.abs(found - share) < 2e-15 / (6.0 * share * (1.0 - share)))
 
 
 @pytest.mark.parametrize("law", [ting, correspondence])

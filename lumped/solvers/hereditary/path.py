@@ -266,10 +266,9 @@ class ByField:
     def place(self, times: Array) -> Array:
         """Newton's steps from a table, within its intervals."""
         known, table = self._table
-        i = np.clip(np.searchsorted(table, times), 1, known.size - 1)
-        low, high, rise = known[i - 1], known[i], table[i] - table[i - 1]
-        share = np.divide(times - table[i - 1], rise, out=np.zeros_like(rise), where=rise > 0.0)
-        place = low + (high - low) * np.clip(share, 0.0, 1.0)
+        i = np.searchsorted(table[1:-1], times)
+        low, high = known[i], known[i + 1]
+        place = np.interp(times, table, known)
         for _ in range(NEWTON_STEPS):
             time, slope = self.path.field(0, place)
             step = np.divide(times - time, slope, out=np.zeros_like(time), where=slope > 0.0)
