@@ -228,7 +228,7 @@ class FlatImpact:
 
 def _by_piece(starts: Array, times: Array) -> Iterator[tuple[int, NDArray[np.bool_]]]:
     """The pieces that begin at `starts`, in which some of the times are, and which; the first knows what is earlier."""
-    place = np.clip(np.searchsorted(starts, times, side="right") - 1, 0, starts.size - 1)
+    place = np.searchsorted(starts[1:], times, side="right")
     for index in np.unique(place):
         yield int(index), place == index
 
