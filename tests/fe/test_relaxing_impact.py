@@ -284,15 +284,19 @@ def test_steps_on_a_spring_err_as_their_square_whatever_time_was_expected(
         "duration": 2.0 * depth / velocity * beta(0.4, 0.5) / 2.5 + late * depth / velocity,
         "impulse": 2.0 * mass * velocity,
     }
-    errors = []
+    errors, times = [], []
     for steps in (60, 120):
         numerics = settings_of(strike, steps=steps).varied(contact_time=expected * true["duration"], peak_share=0.5)
         march = on_spring(strike, numerics, unit, scale, late * depth / unit).march()
         found = Curve.of(march, strike).quantities
+        assert march.radius == pytest.approx(np.where(march.depth[1:-1] > late * depth, unit, 0.0))
+        assert march.work.iterations == march.work.steps
+        times.append(march.time)
         errors.append([found[name] / value - 1.0 for name, value in true.items()])
         assert abs(march.energy["residual"]) < 1e-3 * energy
         slower, last = velocity - march.impulse[-2:] / mass, march.time[-1] - march.time[-2]
         assert slower[1] < (march.depth[-1] - march.depth[-2]) / last < slower[0], "what is left goes by its speeds"
+    assert times[1][:60:2] == pytest.approx(times[0][:30], rel=1e-12), "extrapolation wants halves of the same steps"
     few, many = np.abs(errors)
     assert few.max() < 1e-3
     assert np.all(many < np.maximum(0.3 * few, 1e-7))
