@@ -46,8 +46,7 @@ STEPS = 400  # along the contact time of the scene, at the default tolerance
 FEWEST, MANY, MOST = 48, 2_500, 20_000  # elements: at first, and as far as they are doubled
 MOST_MESHED = 100_000  # at all
 LIGHT = 16.0  # of them in the part of the rod that is as heavy as the striker
-DENTED = 64.0  # of them which a wave crosses while the striker dents the rod
-FRONT = 40.0  # of them which it crosses while the dent's force grows to that of a front
+FRONT = 40.0  # of them which a wave crosses while the dent's force grows to that of a front
 RELAXED = 6.0  # of them which it crosses in the shortest relaxation time
 COARSEST = 8  # of them that a user's own steps may leave
 ROUNDING = 1e-9  # of the striker's velocity, below which it does not leave the rod
@@ -90,7 +89,7 @@ def _fewest(scene: Scene, dent: HertzImpact | None) -> float:
         impedance = rod_mass(scene) / crossing
         share = impedance * scene.velocity / dent.force
         grown = share ** (1.0 / scene.profile.exponent_of_force) * dent.depth / scene.velocity
-        needs += [DENTED * crossing / dent.duration, FRONT * crossing / grown]
+        needs.append(FRONT * crossing / grown)  # by this or by LIGHT a wave crosses 64 in the time of a dent, or more
     needs += [RELAXED * crossing / min(times)] if times else []
     return min(max(needs), MANY)
 
