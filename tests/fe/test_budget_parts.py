@@ -320,12 +320,16 @@ def test_a_mesh_is_varied_with_no_fewer_steps_where_few_would_hide_what_it_chang
 
 
 def test_rows_of_a_curve_with_waves_follow_the_tolerance(numerics: WaveNumerics) -> None:
-    """A polynomial of degree five between them: twice as many err by 2^-5. Fewer steps leave no fewer rows."""
+    """A polynomial of degree five between them: twice as many err by 2^-5. Fewer steps leave no fewer rows.
+
+    A contact that lasts twice as long as planned has twice as many.
+    """
     many = replace(numerics, steps=20_000)
     tight = replace(many, tolerance=many.tolerance / 2**5)
     rows, more, of_half = (len(certify._rows(*one, 1.0)) for one in ((20_000, many), (20_000, tight), (10_000, many)))
     assert more - 1 == pytest.approx(2 * (rows - 1), abs=1)
     assert of_half == rows
+    assert len(certify._rows(40_000, many, 1.0)) - 1 == pytest.approx(2 * (rows - 1), abs=1)
 
 
 def test_the_deepest_of_several_contacts_is_what_may_be_too_deep(

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -203,3 +203,21 @@ def test_chatter_at_the_end_moves_the_end_and_not_the_speed_after_it() -> None:
     assert change.errors["duration"] >= by
     assert change.errors["impulse"] < 0.1 * by * float(early.impulse[-1])
     assert change.errors["restitution"] < 0.1 * by
+
+
+@pytest.mark.parametrize("trusted", [0.4, 1.25, 2.5])
+def test_an_end_that_longer_steps_move_errs_by_more_than_twice_as_much_whatever_order_is_trusted(trusted: float) -> None:
+    """Two marches of one motion, of which the second takes a hundredth longer; all else is trusted as ever."""
+    first, by = march(STEPS, 0.0), 0.01
+    second = replace(first, time=first.time * (1.0 + by))
+    curves = Curve.of(first, STRIKE), Curve.of(second, STRIKE)
+    end, other = waves.EndMoved(*curves, trusted).errors, waves.Moved(*curves, trusted).errors
+    assert 2.0 * by < end.pop("duration") < 3.0 * by
+    assert other.pop("duration") == pytest.approx(trusted * by, rel=0.1)
+    assert end == other
+
+
+@pytest.mark.parametrize("fails", ["first", "second"])
+def test_a_setting_whose_run_fails_tells_nothing(fails: str) -> None:
+    known, settings = Curve.of(march(STEPS, 0.0), STRIKE), (cast("Any", "first"), cast("Any", "second"))
+    assert waves._changed(lambda one: None if one == fails else known, *settings, 1.0) is None

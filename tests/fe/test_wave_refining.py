@@ -78,6 +78,11 @@ def test_a_force_is_read_through_chatter(steps: int) -> None:
     off = np.abs(curve.dense_force - wanted(curve.shares))
     assert off.max() < 2e-4
     assert (off <= reading(calm, strike, settings(steps=steps)).force(curve.dense_time) + 1e-5).all()
+    few = settings(steps=steps, tolerance=0.1)
+    coarse = curve_of(calm, strike, few)
+    off = np.abs(coarse.dense_force - wanted(coarse.shares))
+    assert off.max() > 2e-4
+    assert (off <= reading(calm, strike, few).force(coarse.dense_time)).all()
     noisy = curve_of(impact(steps, 5e-3)[0], strike, settings(steps=steps))
     within = (noisy.shares > 0.2) & (noisy.shares < 0.8)
     left = np.abs(noisy.dense_force - wanted(noisy.shares))[within]
