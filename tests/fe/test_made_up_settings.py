@@ -206,7 +206,7 @@ def test_chatter_at_the_end_moves_the_end_and_not_the_speed_after_it() -> None:
 
 
 @pytest.mark.parametrize("trusted", [0.4, 1.25, 2.5])
-def test_an_end_that_longer_steps_move_errs_by_more_than_twice_as_much_whatever_order_is_trusted(trusted: float) -> None:
+def test_an_end_that_longer_steps_move_errs_by_more_than_twice_that_whatever_is_trusted(trusted: float) -> None:
     """Two marches of one motion, of which the second takes a hundredth longer; all else is trusted as ever."""
     first, by = march(STEPS, 0.0), 0.01
     second = replace(first, time=first.time * (1.0 + by))
