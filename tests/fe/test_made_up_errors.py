@@ -662,6 +662,7 @@ def test_a_flight_follows_from_the_speed_and_the_depth_where_bodies_part() -> No
     curve = replace(made_up(STEPS, np.zeros_like), strike=replace(STRIKE, gravity=9.81))
     time, depth, velocity, *_ = _flight(curve, 1.2)
     since = time - 1.0
+    assert 0.0 < since[0] < since[-1] == pytest.approx(0.2)
     np.testing.assert_allclose(velocity, 9.81 * since - curve.leaving_speed)
     np.testing.assert_allclose(depth, curve.depth[-1] - curve.leaving_speed * since + 0.5 * 9.81 * since**2, atol=1e-9)
 
