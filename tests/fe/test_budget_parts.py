@@ -376,7 +376,8 @@ def contact(number: int) -> Any:
     """One of a row, values and errors made up, each of another size: the second the hardest, the third the deepest."""
     values = {"peak_force": (5.0, 9.0, 7.0)[number], "peak_depth": (1e-3, 2e-3, 3e-3)[number], "impulse": 0.2 + number}
     values |= {"duration": 0.05 + 0.01 * number, "restitution": 0.9 - 0.1 * number, "peak_time": 0.02 + 3e-3 * number}
-    errors = {name: 1e-3 * (number + 1) * value for name, value in values.items()} | {"history_l2": 1e-3 * (2, 3, 1)[number]}
+    errors = {name: 1e-3 * (number + 1) * value for name, value in values.items()}
+    errors["history_l2"] = (2e-3, 3e-3, 1e-3)[number]
     strike = SimpleNamespace(velocity=3.0 - number, gravity=9.81, touched_at=0.7 * number)
     return SimpleNamespace(
         curve=SimpleNamespace(strike=strike, quantities=values),
