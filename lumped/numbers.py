@@ -122,6 +122,8 @@ def falling_zero(
     at_low, at_high = ends or (value(low), value(high))
     if at_low <= 0.0:
         return low
+    if at_high > 0.0:  # where it was seen to have fallen by another sum, whose rounding is another
+        return high
     place, side = high, 0
     for _ in range(ROOT_STEPS):
         before, place = place, high - at_high * (high - low) / (at_high - at_low)

@@ -255,9 +255,13 @@ def solve(problem: Hereditary, end_time: float, settings: Settings, before: Cour
 
 
 def _lost_in_rounding(problem: Hereditary, course: Course) -> tuple[dict[str, float], float]:
-    """Of the duration, s: the force of an elastic cone falls as a square, whose zero is known to a root; of it none."""
-    outward = course.outward
-    return {"duration": outward.blur * problem.scales.time} if isinstance(outward, Closing) else {}, 0.0
+    """Of the end, and of what gravity does to the velocity meanwhile: the force of an elastic cone falls as a square,
+    whose zero is known to the root of rounding. Of the force nothing.
+    """
+    if not isinstance(course.outward, Closing):
+        return {}, 0.0
+    blur = course.outward.blur
+    return {"duration": blur * problem.scales.time, "restitution": abs(problem.gravity) * blur}, 0.0
 
 
 def _phase(path: Path) -> HereditaryPhase:

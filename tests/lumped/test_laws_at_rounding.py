@@ -11,6 +11,7 @@ from scipy.special import beta
 
 from lumped import Scene, laws, simulate
 from lumped.load_curves.bent import BentCurve
+from lumped.numbers import falling_zero
 from lumped.shapes.cone import Cone
 from lumped.solvers.point import phase
 from lumped.solvers.point.memory import StepLoad
@@ -91,3 +92,19 @@ def test_the_end_of_a_force_that_falls_as_a_square_is_known_to_the_root_of_round
     assert abs((duration.value or 0.0) - exact) <= (duration.error or 0.0)
     assert (duration.error or 1.0) < 1e-8 * exact
     assert found.converged is (tolerance > 1e-9)
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-5, 1e-7])
+def test_gravity_makes_of_the_end_s_bar_one_of_the_velocity(tolerance: float, impact: Callable[..., Scene]) -> None:
+    """The energy of an elastic cone is whole at the end, whenever that is, and however heavy it is beside its force."""
+    scene = impact(shape=Cone(27.3))
+    heavy = impact(shape=Cone(27.3), gravity=30.0 * scene.velocity / scene.elastic_contact_time)
+    found = simulate(laws.correspondence.of(heavy), heavy, tolerance)
+    restitution = found.quantities["restitution"]
+    assert abs((restitution.value or 0.0) - 1.0) <= (restitution.error or 0.0) < 1e-5
+
+
+def test_what_has_not_fallen_but_for_rounding_ends_where_it_was_seen_to() -> None:
+    assert falling_zero(lambda place: 1e-17, 0.0, 1.0) == 1.0
+    assert falling_zero(lambda place: 1e-17 * (2.0 - place), 0.0, 1.0) == 1.0
+    assert falling_zero(lambda place: 0.25 - place, 0.0, 1.0) == pytest.approx(0.25, rel=1e-12)
