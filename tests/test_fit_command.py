@@ -168,6 +168,8 @@ def test_a_file_that_is_not_there_leads_to_its_nearest(
 ) -> None:
     (line,) = refused("fit", str(curve.with_stem("jurve")), "--scene", str(body), "--law", "hertz")
     assert f"No such file or directory; did you mean {curve}?; accepted: a CSV file" in line
+    (line,) = refused("fit", str(curve.with_name("curve.**")), "--scene", str(body), "--law", "hertz")
+    assert "No such file or directory; accepted: a CSV file" in line
 
 
 def test_what_is_not_reached_is_written_as_such(

@@ -50,7 +50,8 @@ def content(path: Path, most: int, kind: str) -> bytes:
 def _like(path: Path) -> str:
     """Which file of its kind beside it may be meant by a path that is none."""
     with suppress(OSError):
-        return nearest(path.stem, {one.stem: str(one) for one in sorted(path.parent.glob(f"*{path.suffix}"))})
+        beside = sorted(one for one in path.parent.iterdir() if one.suffix == path.suffix)
+        return nearest(path.stem, {one.stem: str(one) for one in beside})
     return ""
 
 
