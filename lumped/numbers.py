@@ -114,7 +114,8 @@ def falling_zero(
     close: float = ROUNDING,
     small: float = 0.0,
 ) -> float:
-    """Where `value` falls to zero between `low`, where it is positive, and `high`: false position, Illinois.
+    """Where `value` falls to zero between `low`, where it is positive, and `high`, where it is not: false position,
+    Illinois.
 
     `ends`: its values there, where they are known. Found are two places in a row as `close`, relatively, or a value as
     `small`.
@@ -122,7 +123,7 @@ def falling_zero(
     at_low, at_high = ends or (value(low), value(high))
     if at_low <= 0.0:
         return low
-    if at_high > 0.0:  # where it was seen to have fallen by another sum, whose rounding is another
+    if at_high > 0.0:  # but for rounding it is not: who saw the fall summed otherwise
         return high
     place, side = high, 0
     for _ in range(ROOT_STEPS):

@@ -99,11 +99,11 @@ def triangulated(gmsh: Any, size: str, outline: Outline) -> tuple[np.ndarray, np
     row_of_tag = np.zeros(int(tags.max()) + 1, dtype=int)
     row_of_tag[tags.astype(int)] = np.arange(len(tags))
     nodes = np.ascontiguousarray(coordinates.reshape(-1, 3)[row_of_tag[used], :2].T)
-    corners_of = np.ascontiguousarray(triangles.reshape(-1, 3).T)
+    triangles = np.ascontiguousarray(triangles.reshape(-1, 3).T)
     if (found := _imprints.get()) is not None:
-        digest = hashlib.sha256(nodes.tobytes() + corners_of.tobytes()).hexdigest()
-        found.append(Imprint(nodes.shape[1], corners_of.shape[1], digest))
-    return nodes, corners_of
+        digest = hashlib.sha256(nodes.tobytes() + triangles.tobytes()).hexdigest()
+        found.append(Imprint(nodes.shape[1], triangles.shape[1], digest))
+    return nodes, triangles
 
 
 def filled(

@@ -40,19 +40,18 @@ def content(path: Path, most: int, kind: str) -> bytes:
             found = file.read(most + 1) or b""
     except (OSError, ValueError) as error:  # a name with a null byte is no value for open
         reason = error.strerror if isinstance(error, OSError) else "its name cannot be one"
-        said = f"cannot be read: {reason or error}{_like(path) if isinstance(error, FileNotFoundError) else ''}"
-        raise BadInput(Fault(str(path), "", f"{said}; accepted: {kind}")) from error
+        hint = nearest(path.stem, _beside(path, path.suffix)) if isinstance(error, FileNotFoundError) else ""
+        raise BadInput(Fault(str(path), "", f"cannot be read: {reason or error}{hint}; accepted: {kind}")) from error
     if len(found) > most:
         raise BadInput(Fault(str(path), "", f"larger than {most} bytes; accepted: {kind}"))
     return found
 
 
-def _like(path: Path) -> str:
-    """Which file of its kind beside it may be meant by a path that is none."""
-    with suppress(OSError):
-        beside = sorted(one for one in path.parent.iterdir() if one.suffix == path.suffix)
-        return nearest(path.stem, {one.stem: str(one) for one in beside})
-    return ""
+def _beside(path: Path, ending: str) -> Mapping[str, str]:
+    """By their stems the files of an ending in the folder of a path; none where that is no folder, or cannot be one."""
+    with suppress(OSError, ValueError):
+        return {one.stem: str(one) for one in sorted(path.parent.iterdir()) if one.suffix == ending}
+    return {}
 
 
 def exists(path: Path) -> bool:
@@ -118,11 +117,7 @@ class Packaged:
 
     def _near(self, path: Path) -> Mapping[str, str]:
         """What may be meant by a path that is none: the packaged names, and by their stems the TOML files beside it."""
-        with suppress(OSError, ValueError):  # a folder that is none, or whose name cannot be one
-            return dict(zip(self.names, self.names, strict=True)) | {
-                one.stem: str(one) for one in sorted(path.parent.glob("*.toml"))
-            }
-        return {}
+        return {**dict(zip(self.names, self.names, strict=True)), **_beside(path, ".toml")}
 
 
 SCENES = Packaged("scenes", "scene")

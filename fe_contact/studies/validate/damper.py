@@ -47,5 +47,5 @@ MEMBER = ReportPart(
     question="What does a damper that pounds on a ring do to a structure's free vibration?",
     command="fe-contact ptmd",
     make=make,
-    seconds=2,
+    seconds=6,
 )
