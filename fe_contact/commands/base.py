@@ -21,7 +21,8 @@ from fe_contact.progress import Progress, clear, log_to, terminal, to_all
 from fe_contact.settings import Given, faults
 from lumped.errors import BadInput, Fault, shown
 from lumped.indentation import Indentation
-from lumped.result.folder import publish
+from lumped.result.folder import RECORD
+from lumped.result.folder import publish as publish_files
 from lumped.result.result import Result, worst
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
@@ -89,7 +90,7 @@ NO_CACHE = option("--no-cache", action="store_true", help="mesh and condense ane
 OUTPUT = (
     option("--out", type=Path, metavar="DIR", help="folder for the results, without those of a former run"),
     JSON,
-    option("--quiet", action="store_true", help="no progress on stderr"),
+    option("--quiet", action="store_true", help="only the answer: no progress, no questions"),
     option("--log", metavar="FILE", help="write progress into a file, line by line"),
     NO_CACHE,
 )
@@ -265,8 +266,8 @@ class StudyRun:
             self.progress("chart")
             plot(where)
 
-        content = publish(self.where, written, record)
-        say(self.args, content, [*lines, f"written to {self.where}"], title)
+        content, told = publish(self.where, written, record)
+        say(self.args, content, [*lines, told], title)
         if missed:
             complain(missed)
         return NOT_REACHED if missed else DONE
@@ -284,6 +285,16 @@ def finite_exponents(args: argparse.Namespace, study: str, rows: Callable[[], Se
     return run.finish(f"{study}_finite.json", told(found), write, plot)
 
 
+def publish(where: Path, write: Callable[[Path], object], record: str = RECORD) -> tuple[Table, str]:
+    """Results into their folder, all at once; the record's content, and a line that says where.
+
+    Raises CannotWrite.
+    """
+    older = (where / record).is_file()
+    content = publish_files(where, write, record)
+    return content, f"written to {where}{', in place of older results' if older else ''}"
+
+
 def say(args: argparse.Namespace, content: Given, lines: Sequence[str], title: str = "") -> None:
     """On stdout what was found: as JSON, or line by line, under a title indented."""
     clear()
@@ -296,7 +307,6 @@ def report(
     result: Result | Indentation,
     content: Given,
     lines: Sequence[str],
-    where: Path,
     title: str,
     asked: Model,
 ) -> int:
@@ -305,7 +315,7 @@ def report(
     ``asked``: the scene's own model.
     """
     missed = "" if result.converged else result.message  # said once, on stderr
-    say(args, content, [*(line for line in lines if line != missed), f"written to {where}"], title)
+    say(args, content, [line for line in lines if line != missed], title)
     if missed:
         complain(missed)
     if not result.model_sufficient:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
 from lumped.errors import BadInput, Fault, shown
-from lumped.result.folder import publish
 
 if TYPE_CHECKING:
     from lumped.result.score import Curve
@@ -35,11 +34,11 @@ def execute(args: argparse.Namespace) -> int:
         write_comparison(comparison, folder)
         plot_comparison(comparison, folder)
 
-    publish(run.where, write)
+    _, told = base.publish(run.where, write)
     for remark in remarks:
         base.complain(remark)
     title = f"{scene.name}: against finite elements"
-    return base.report(args, comparison.reference, content, content["verdict"], run.where, title, scene.model)
+    return base.report(args, comparison.reference, content, [*content["verdict"], told], title, scene.model)
 
 
 def _measured(args: argparse.Namespace) -> Curve | None:

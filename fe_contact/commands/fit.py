@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
 from lumped.errors import BadInput, Fault, NotReached, addressed, shown
-from lumped.result.folder import publish
 from lumped.schema import Table
 
 if TYPE_CHECKING:
@@ -89,7 +88,7 @@ def _fit(asked: FitQuestion) -> int:
         found.write_files(folder)
         plot_fit(asked.curve, found, folder)
 
-    _report(args, asked.scene, found, publish(where, write, RECORD), where)
+    _report(args, asked.scene, found, *base.publish(where, write, RECORD))
     return base.DONE if found.result.converged else base.NOT_REACHED
 
 
@@ -114,12 +113,12 @@ def _ranking_line(rank: int, one: RankedFit) -> str:
     return f"{rank:2d}  {one.law:16s} {known}: {values}"
 
 
-def _report(args: argparse.Namespace, scene: Scene, found: Fit, content: Table, where: Path) -> None:
+def _report(args: argparse.Namespace, scene: Scene, found: Fit, content: Table, told: str) -> None:
     """Parameters; for OpenSees the law, with the parameters as comments; warnings on stderr."""
     from lumped import laws
     from lumped.fit import opensees
 
-    text = [*found.summary().splitlines(), f"  written to {where}"]
+    text = [*found.summary().splitlines(), f"  {told}"]
     if args.opensees:
         law = laws.get(found.law).of(found.scene)
         # what is fitted of a material stands in the fit's scene, the gap in that given

@@ -12,7 +12,6 @@ from fe_contact.commands import base
 from fe_contact.methods import FE, simulate
 from fe_contact.progress import Progress
 from lumped.errors import BadInput, Fault, NotReached
-from lumped.result.folder import publish
 from lumped.schema.files import SCENES, parse_assignment, toml_text
 
 if TYPE_CHECKING:
@@ -61,8 +60,8 @@ def execute(args: argparse.Namespace) -> int:
         found.write_files(folder)
         plot_identified(found, folder)
 
-    content = publish(where, write, RECORD)
-    lines = [*summary(found), f"written to {where}"]
+    content, told = base.publish(where, write, RECORD)
+    lines = [*summary(found), told]
     if args.write is not None:
         _write_scene(args.write, found)
         trusted = "" if found.adequate else ", which are not to be trusted"
@@ -125,13 +124,14 @@ def _reference(args: argparse.Namespace, progress: Progress) -> Reference | None
 def summary(found: Identified) -> list[str]:
     """Every parameter with its interval, and how far the law explains the curves; one a line."""
     width = max(map(len, found.parameters))
-    lines = [f"{name:{width}s} {shown(one)}" for name, one in found.parameters.items()]
+    lines = [f"{name:{width}s} {shown(one, name in found.unneeded)}" for name, one in found.parameters.items()]
     lines += list(_of_reference(found))
     if found.posterior is not None:
         posterior = found.posterior
         lines.append(f"sample: {len(posterior.values)} draws, as good as {posterior.effective:.0f} independent ones")
     for name, alone in found.each.items():
-        lines += [f"{name} alone: {key.rpartition('.')[2]} {shown(one)}" for key, one in alone.parameters.items()]
+        told = {key: shown(one, key in alone.unneeded) for key, one in alone.parameters.items()}
+        lines += [f"{name} alone: {key.rpartition('.')[2]} {one}" for key, one in told.items()]
     noises = ", ".join(f"{100.0 * curve.deviation / curve.peak:.2g} %" for curve in found.curves)
     touches = ", ".join(f"{curve.touch:.6g}" for curve in found.curves)
     return [*lines, f"touch at {touches} s, noise {noises} of the peak", found.verdict]
@@ -148,11 +148,13 @@ def _of_reference(found: Identified) -> Iterator[str]:
     yield f"{runs} runs of finite elements, {error:.2g} % of the peak from Ting's law"
 
 
-def shown(one: Interval) -> str:
-    """A value with its interval; none where any other fits as well."""
+def shown(one: Interval, unneeded: bool = False) -> str:
+    """A value with its interval; no value where any other fits as well, or none fits best."""
     if one.low is None and one.high is None:
         return f"not told by the curves ({100.0 * one.level:g} %)"
     low, high = ("open" if end is None else f"{end:.5g}" for end in (one.low, one.high))
+    if unneeded:
+        return f"none ({high if one.high is None else f'up to {high}'}, {100.0 * one.level:g} %) {one.unit}".rstrip()
     return f"{one.value:.6g} ({low} to {high}, {100.0 * one.level:g} %) {one.unit}".rstrip()
 
 

@@ -8,7 +8,6 @@ from fe_contact.commands import base
 from fe_contact.settings import tolerance_of
 from lumped.errors import BadInput, Fault, NotReached, nearest, shown
 from lumped.indentation import Indentation
-from lumped.result.folder import publish
 from lumped.scene.indenter import Indenter
 from lumped.schema import Table
 
@@ -24,9 +23,9 @@ def execute(args: argparse.Namespace) -> int:
     depths = tuple(base.number(text, "--depths") for text in args.depths.split(","))
     where = base.folder(args, "indent", indenter.name)
     found = _indented(args, indenter, depths, given)
-    content = publish(where, found.write_files)
+    content, told = base.publish(where, found.write_files)
     title, *lines = found.summary().split("\n  ")
-    return base.report(args, found, content, lines, where, title, indenter.model)
+    return base.report(args, found, content, [*lines, told], title, indenter.model)
 
 
 def _indented(args: argparse.Namespace, indenter: Indenter, depths: tuple[float, ...], given: Table) -> Indentation:

@@ -184,6 +184,10 @@ def _write(path: Path, text: str) -> None:
     try:
         with path.open("x", encoding="utf-8") as file:
             file.write(text)
+    except FileExistsError as failure:
+        raise BadInput(
+            Fault("--out", str(path), "is there already; cure: another name, or remove it first")
+        ) from failure
     except OSError as failure:
         reason = f"cannot be written: {failure.strerror}; accepted: a new file, in a folder that is there"
         raise BadInput(Fault("--out", str(path), reason)) from failure

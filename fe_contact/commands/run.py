@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
 from lumped.errors import BadInput, Fault, NotReached
-from lumped.result.folder import publish
 from lumped.result.result import Result, write_failure
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
@@ -60,9 +59,9 @@ def _impact(args: argparse.Namespace, scene: Scene, table: Table, where: Path, t
         result, solved = simulate(scene, args.method, table, progress=base.progress_of(args)), None
         if taken:
             _check_taken(args.method, scene.model, result.model)
-    content = publish(where, lambda folder: _write(args, solved, result, folder))
+    content, told = base.publish(where, lambda folder: _write(args, solved, result, folder))
     title, *lines = result.summary().split("\n  ")
-    return base.report(args, result, content, [*taken, *_weighed(result), *lines], where, title, scene.model)
+    return base.report(args, result, content, [*taken, *_weighed(result), *lines, told], title, scene.model)
 
 
 def _check_taken(method: str, asked: Model, answered: Model) -> None:

@@ -87,7 +87,7 @@ def plot_ranking(ranked: Sequence[RankedFit], curve: Curve, where: Path) -> tupl
     shown = [one for one in ranked if one.fit is not None]
     rows = -(-len(shown) // COLUMNS)
     left_out = ", ".join(one.law for one in ranked if one.fit is None)
-    lines = ["grey: curve; red: law; blue: the curve less the law, enlarged as told. AICc over that of the best law"]
+    lines = ["grey: curve; orange: law; blue: the curve less the law, enlarged as told. AICc over that of the best law"]
     lines += [f"without a fit: {left_out}"] if left_out else []
     size = rows * HEIGHT
     with style.sheet(where, "fits", "every law, fitted", lines, size, width=WIDE_TITLE, above=0.34) as sheet:

@@ -26,10 +26,10 @@ def plot_identified(found: Identified, where: Path) -> tuple[Path, Path]:
     curves = found.curves[:MOST]
     columns = min(COLUMNS, len(curves))
     rows = -(-len(curves) // columns)
-    lines = [f"{name} = {_shown(one)}" for name, one in found.parameters.items()]
+    lines = [f"{name} = {_shown(one, name in found.unneeded)}" for name, one in found.parameters.items()]
     lines.append(_verdict(found))
     if found.posterior is not None:
-        lines.append(f"red, below: where the law lies, {100.0 * LEVEL:g} %")
+        lines.append(f"orange, below: where the law lies, {100.0 * LEVEL:g} %")
     title, size = f"{found.source.removesuffix('.toml')}: identified", style.COLUMN if columns == 1 else style.PAGE
     width = TITLE_WIDTH if columns > 1 else TITLE_WIDTH // 2
     law = "Ting's law" if found.by_reference is None else "Ting's law, corrected"
@@ -52,7 +52,9 @@ def _verdict(found: Identified) -> str:
     return f"{found.verdict}: {error:.2g} % of the peak is left beside the noise"
 
 
-def _shown(one: Interval) -> str:
+def _shown(one: Interval, unneeded: bool) -> str:
+    if unneeded:
+        return "none" if one.high is None else f"none, {100.0 * one.level:g} % up to {readable(one.high, one.unit, 3)}"
     low, high = ("open" if end is None else readable(end, one.unit, 3) for end in (one.low, one.high))
     return f"{readable(one.value, one.unit)}, {100.0 * one.level:g} % from {low} to {high}"
 

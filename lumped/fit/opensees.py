@@ -60,7 +60,9 @@ LANGUAGES = {
     "tcl": ("uniaxialMaterial {name} {values}", " "),
     "python": ('ops.uniaxialMaterial("{name}", {values})', ", "),
 }
-TANGENT = "its tangent has the wrong sign: take steps in which the mass outweighs the stiffness, or an explicit scheme"
+# Newton's error with a tangent of the wrong sign shrinks 2 k/(4 m/dt^2 - k) times a step (trapezoidal rule, largest
+# tangent k): 2/15 where dt is half of sqrt(m/k), not at all from 1.15 times it on.
+NEWTON = 0.5
 UNITS = "SI units, N, m, s; the strain of a zeroLength element is the relative displacement, negative in compression"
 
 
@@ -88,17 +90,17 @@ def material(law: Law, scene: Scene) -> UniaxialMaterial:
         case Kelvin():
             return _viscoelastic_gap(law, law.c)
         case Jankowski() | Mahmoud():
-            return _jankowski_impact(law, law.c, scene.reduced_mass)
+            return _jankowski_impact(law, law.c, scene)
         case HertzLaw():
-            return _hertzdamp(law, 0.0)
+            return _hertzdamp(law, 0.0, scene)
         case Hertzdamp():
             return _hertzdamp(
-                law, law.xi, "its v0 is the trial rate of the first step inside the gap, not that at touch"
+                law, law.xi, scene, "it takes for the velocity at touch the rate of the first step in contact"
             )
         case HuntCrossley():
-            return _of_one_speed(law, law.chi, scene.velocity)
+            return _of_one_speed(law, law.chi, scene)
         case Khatiwada():
-            return _of_one_speed(law, law.c / law.k, scene.velocity)
+            return _of_one_speed(law, law.c / law.k, scene)
         case ImpactBilinear():
             return _impact_material(law)
     raise _refused(law.name)
@@ -210,23 +212,32 @@ def _viscoelastic_gap(law: PowerLaw, c: float) -> UniaxialMaterial:
     return UniaxialMaterial("ViscoelasticGap", {"K": law.k, "C": c, "gap": _gap(law)}, differences)
 
 
-def _jankowski_impact(law: PowerLaw, c: float, mass: float) -> UniaxialMaterial:
+def _jankowski_impact(law: PowerLaw, c: float, scene: Scene) -> UniaxialMaterial:
     """Kh depth^n + 2 xi sqrt(Meff Kh depth^(n-1)) rate in the approach: Jankowski's, and with n = 1 Mahmoud's."""
-    xi = c / (2.0 * math.sqrt(mass * law.k))
-    arguments = {"Kh": law.k, "xi": xi, "Meff": mass, "gap": _gap(law), "n": law.alpha}
-    return UniaxialMaterial("JankowskiImpact", arguments, (TANGENT,))
+    xi = c / (2.0 * math.sqrt(scene.reduced_mass * law.k))
+    arguments = {"Kh": law.k, "xi": xi, "Meff": scene.reduced_mass, "gap": _gap(law), "n": law.alpha}
+    return UniaxialMaterial("JankowskiImpact", arguments, (_steps(law, scene),))
 
 
-def _hertzdamp(law: PowerLaw, damping: float, *differences: str) -> UniaxialMaterial:
+def _hertzdamp(law: PowerLaw, damping: float, scene: Scene, *differences: str) -> UniaxialMaterial:
     """Kh depth^n (1 + xiNorm rate/v0)."""
     arguments = {"Kh": law.k, "xiNorm": damping, "gap": _gap(law), "n": law.alpha}
-    return UniaxialMaterial("Hertzdamp", arguments, (*differences, TANGENT))
+    return UniaxialMaterial("Hertzdamp", arguments, (*differences, _steps(law, scene)))
 
 
-def _of_one_speed(law: PowerLaw, factor: float, velocity: float) -> UniaxialMaterial:
+def _of_one_speed(law: PowerLaw, factor: float, scene: Scene) -> UniaxialMaterial:
     """A damping that does not follow the velocity, s/m, is Hertzdamp's at one velocity."""
-    same = f"the same law at {velocity:.6g} m/s only: its damping follows the trial rate of the first step"
-    return _hertzdamp(law, factor * velocity, same)
+    same = f"the same law at {scene.velocity:.6g} m/s only: its damping follows the rate of the first step in contact"
+    return _hertzdamp(law, factor * scene.velocity, scene, same)
+
+
+def _steps(law: PowerLaw, scene: Scene) -> str:
+    """In which steps Newton's iteration converges all the same: those for the tangent at the largest elastic depth."""
+    mass, power = scene.reduced_mass, law.alpha + 1.0
+    depth = (0.5 * power * mass * scene.velocity**2 / law.k) ** (1.0 / power)
+    step = NEWTON * math.sqrt(mass / (law.alpha * law.k * depth ** (law.alpha - 1.0)))
+    told = f"take steps below {step:.2g} s at {scene.velocity:.3g} m/s, or an explicit scheme"
+    return f"its tangent has the wrong sign: {told}"
 
 
 def _impact_material(law: ImpactBilinear) -> UniaxialMaterial:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations
 
@@ -44,16 +45,17 @@ def answer(
     table = histories.file.with_values(histories.keys, sought[: len(histories.keys)])
     ends = dict(_ends(histories, valleys[0]))
     warnings = (
+        *_of_residuals(tested, widened, curves),
         *(_of_end(name, end, parameters[name]) for name, end in ends.items()),
         *_warnings(parameters, told),
-        *_of_residuals(tested, widened, curves),
         *_of_a_low_pass(histories, sought, parameters),
         *_of_the_sample(posterior, told),
         *_of_the_reference(by_reference, parameters),
     )
     source = histories.file.source
     found = (source, parameters, told, curves, tested, widened, table, warnings, posterior, by_reference)
-    return Identified(*found, beyond=tuple(name for name, end in ends.items() if end != NONE))
+    unneeded = tuple(name for name, end in ends.items() if end == NONE)
+    return Identified(*found, beyond=tuple(name for name in ends if name not in unneeded), unneeded=unneeded)
 
 
 def _apart(
@@ -108,21 +110,23 @@ def _ends(histories: Histories, valley: Valley) -> Iterator[tuple[str, str]]:
 
 def _of_end(name: str, end: str, one: Interval) -> str:
     if end == NONE:
-        told = f"{name} ran into the end of its search, {one.value:.3g} {one.unit}".rstrip()
-        return f"{told}: the curves do not need it; cure: a law without it, or hold it"
+        return f"{name} ran into the end of its search, none: the curves do not need it; cure: a law without it"
     told = f"{name} ran into the {end} end of its search, {one.value:.3g} {one.unit}".rstrip()
     return f"{told}: it is not found; cure: hold it, or another first guess in the scene file"
 
 
 def _warnings(parameters: Mapping[str, Interval], valleys: Sequence[ToldValley]) -> Iterator[str]:
     names, correlation = list(parameters), valleys[0].correlation
+    open_ends = defaultdict[str, list[str]](list)
     for name, one in parameters.items():
         if one.unfound:
             yield f"{name}: the search for its {' and '.join(one.unfound)} end did not converge; hold another key"
         elif one.low is None and one.high is None:
             yield f"{name}: the curves do not tell it; hold it, or add a history at another velocity"
         elif side := open_side(one.low, one.high):
-            yield f"{name}: its interval is open {side}: no value there is excluded"
+            open_ends[side].append(name)
+    for side, which in open_ends.items():
+        yield f"{', '.join(which)}: open {side}: no value there is excluded"
     for i, j in combinations(range(len(names)), 2):
         if abs(correlation[i, j]) > CORRELATED:
             told = f"{names[i]} and {names[j]} are correlated by {correlation[i, j]:+.3f}"

@@ -165,7 +165,8 @@ class Identified:
     `table`: the scene file with the values found; `whiteness` tests what is left, and `warnings` say what it means.
     `widened`: the intervals are so many times as wide as those of noise alone. `posterior`: its draws, `by_reference`:
     what a reference changed, `each`: what every curve says alone, where these were asked for. `beyond`: keys that ran
-    into an end of their search, beyond which the likeliest value lies: they are not found.
+    into an end of their search, beyond which the likeliest value lies: they are not found. `unneeded`: keys of which
+    none is the likeliest value.
     """
 
     source: str
@@ -180,6 +181,7 @@ class Identified:
     by_reference: ByReference | None = None
     each: Mapping[str, Identified] = field(default_factory=dict)
     beyond: tuple[str, ...] = ()
+    unneeded: tuple[str, ...] = ()
 
     @property
     def adequate(self) -> bool:

@@ -1,7 +1,8 @@
-"""A measured curve from a CSV file, as loggers write it: units by the header, semicolons, decimal commas, more columns.
+"""A measured curve from a CSV file, as loggers write it: units by the header, semicolons or spaces, decimal commas.
 
 The header is the first line that names a time and a force: `time_s,force_N`, `t [ms];F [kN]`, `Zeit/ms`, `Force (N)`;
-units may stand in a line of their own below. What had to be guessed is said in the curve's remarks.
+units may stand in a line of their own below, and other columns beside. What had to be guessed is said in the curve's
+remarks.
 """
 
 from __future__ import annotations
@@ -24,9 +25,11 @@ from lumped.result.score import Curve
 from lumped.schema.csv_file import FILE, MOST_BYTES, MOST_ROWS
 from lumped.schema.files import content
 
-SEPARATORS = "\t;,"  # the first that tells a time from a force
+SPACES = " "  # one or more
+SEPARATORS = ("\t", ";", ",", SPACES)  # the first that tells a time from a force
 PREAMBLE = 40  # work: lines in which a header is looked for
 WORD = re.compile(r"[^\W_]+")
+ACCELERATION = re.compile(r"\b(acc|acceleration|beschleunigung)(?![^\W_])", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -83,7 +86,18 @@ TIME = Dimension(
 FORCE = Dimension(
     "force_N",
     frozenset(("force", "f", "load", "kraft", "contact force", "impact force")),
-    {"N": 1.0, "kN": 1e3, "mN": 1e-3, "MN": 1e6, "µN": 1e-6, "μN": 1e-6, "uN": 1e-6, "kgf": 9.80665, "lbf": 4.4482216},
+    {
+        "N": 1.0,
+        "kN": 1e3,
+        "mN": 1e-3,
+        "MN": 1e6,
+        "µN": 1e-6,
+        "μN": 1e-6,
+        "uN": 1e-6,
+        "kgf": 9.80665,
+        "lbf": 4.4482216,
+        "kip": 4448.2216,
+    },
 )
 
 
@@ -132,7 +146,9 @@ def read_curve(path: Path) -> Curve:
         cure = "multiply it by -1" if force.min() < 0.0 else "a column in which the bodies press"
         reason = f"never above zero; accepted: compression positive; cure: {cure}"
         raise BadInput(Fault(source, header.force.header, reason))
-    separated = {",": "", ";": "semicolons separate the columns", "\t": ""}[header.separator]
+    separated = {";": "semicolons separate the columns", SPACES: "spaces separate the columns"}.get(
+        header.separator, ""
+    )
     told = (*header.remarks, separated, "commas are decimal" if commas else "")
     return Curve(time, force, tuple(filter(None, told)), header.units)
 
@@ -163,7 +179,8 @@ def _header(source: str, lines: Sequence[str]) -> CurveHeader:
             except ValueError as several:
                 reason = f"{several}: which is meant? cure: call the one {TIME.plain} or {FORCE.plain}"
                 raise BadInput(Fault(source, "", reason)) from None
-            if time and force and time.place != force.place:
+            aligned = separator != SPACES or len(cells) == len(below)  # no sentence, no "F (N)"
+            if time and force and time.place != force.place and aligned:
                 return CurveHeader(time, force, len(cells), separator, number + 1 + more)
             missing = [one for one, there in ((TIME, time), (FORCE, force)) if not there]
             if 0 < len(missing) < len(lacking):
@@ -171,11 +188,16 @@ def _header(source: str, lines: Sequence[str]) -> CurveHeader:
     header = f"with a header of {shown(nearest)}" if nearest else "of a file without a line"
     said = f"missing column, {header}; accepted: time_s,force_N, or t [ms];F [kN] and the like"
     units = {one.plain: ", ".join(filter(str.isascii, one.units)) for one in lacking}
-    raise BadInput(Fault(source, name, f"{said}, in {known}") for name, known in units.items())
+    cure = "; cure: a column of the force, mass times acceleration" if ACCELERATION.search(nearest) else ""
+    raise BadInput(Fault(source, name, f"{said}, in {known}{cure}") for name, known in units.items())
 
 
 def _cells(line: str, separator: str) -> list[str]:
-    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator), [])]
+    return [cell.strip() for cell in next(_rows([line], separator), [])]
+
+
+def _rows(lines: Sequence[str], separator: str) -> Iterator[list[str]]:
+    return (line.split() for line in lines) if separator == SPACES else csv.reader(lines, delimiter=separator)
 
 
 def _with_units(cells: list[str], below: list[str]) -> tuple[list[str], int]:
@@ -207,7 +229,7 @@ def _number(cell: str) -> float:
 
 def _numbers(source: str, lines: Sequence[str], header: CurveHeader) -> tuple[Array, Array, bool]:
     """Times, s, forces, N, and whether their commas are decimal. Raises BadInput."""
-    rows = (row for row in csv.reader(lines[header.lines :], delimiter=header.separator) if any(map(str.strip, row)))
+    rows = (row for row in _rows(lines[header.lines :], header.separator) if any(map(str.strip, row)))
     columns, missing, commas = (array("d"), array("d")), list[int](), False
     for number, row in enumerate(rows, start=1):
         if number > MOST_ROWS:

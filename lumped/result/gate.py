@@ -30,6 +30,7 @@ EVEN, HOLE, LOST = 0.05, 1.8, 0.05  # steps alike; a step over theirs that is a 
 # A smooth peak in steps of 8 bits has up to 6 % of its rows on the highest step: more is a limit of the instrument.
 CLIPPED, LEAST_CLIPPED = 0.08, 4
 LEVEL_OFF, TAIL = 0.02, 0.5  # of the peak: a silence may stand as far from zero; of the pulse: where silence begins
+OFF_A_LITTLE = 0.005  # of the peak: a silence so far from zero is worth a word
 DECAYED = 0.8  # second half of a silence over its first: a force that creeps to its end falls faster
 EARLY, LATE = 0.2, 0.45  # of the pulse: before zero and after it, where a force of a steep law seems to begin
 SPARE, NEARLY = 0.05, 0.01  # of m v: mass, velocity and force are measured to some per cent; not worth a word
@@ -147,13 +148,12 @@ class MeasuredPulse:
         time, force = self.time[near], self.force[near]
         return float(np.trapezoid(force, time)), self.noise * float(np.sqrt(np.sum(np.diff(time) ** 2)))
 
-    def off_zero(self, silence: Array) -> float:
-        """The mean of a silence, N, where it is no chance; else zero."""
+    def level_of(self, silence: Array) -> tuple[float, float]:
+        """The mean of a silence, N, and how far from zero chance may move it; zero and inf where it is too short."""
         if silence.size < LEAST_ROWS:
-            return 0.0
-        mean = float(silence.mean())
+            return 0.0, math.inf
         chance = DEVIATIONS * float(silence.std()) / math.sqrt(silence.size / self.window)
-        return mean if abs(mean) > max(LEVEL_OFF * self.peak, chance) else 0.0
+        return float(silence.mean()), max(OFF_A_LITTLE * self.peak, chance)
 
 
 Check = Callable[[MeasuredPulse, Scene], Iterator[Finding]]
@@ -226,19 +226,23 @@ def _other_contact(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
 
 
 def _zero(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
-    """A silence that is none: an offset where it stands alike before and after, else a drift."""
+    """A silence that is none: an offset where it stands alike before and after, else a drift; a small one is no bar."""
     if not _single(scene):
         return
-    before, after = pulse.off_zero(pulse.before), pulse.off_zero(pulse.after)
+    (before, chance), (after, chance_after) = pulse.level_of(pulse.before), pulse.level_of(pulse.after)
     if after > 0.0 and (scene.gravity or not _lasts(pulse.after)):
-        after = 0.0  # a weight at rest, or a slow end
-    if not before and not after:
+        after, chance_after = 0.0, math.inf  # a weight at rest, or a slow end
+    silences = ((before, chance, "before touch"), (after, chance_after, "after the contact"))
+    off = [abs(mean) for mean, spread, _ in silences if abs(mean) > spread]
+    if not off:
         return
-    if before and (not pulse.after.size or abs(after - before) < 0.5 * abs(before)):
-        yield Finding(f"offset: before touch the force is {before:.4g} N; cure: subtract it")
-        return
-    told = f"drift: the force is {before:.4g} N before touch and {after:.4g} N after the contact"
-    yield Finding(f"{told}; cure: subtract the line between; charge amplifiers: a longer time constant")
+    known = " and ".join(f"{mean:.3g} N {when}" for mean, spread, when in silences if spread < math.inf)
+    told = f"the force is {known}, {100.0 * max(off) / pulse.peak:.2g} % of the peak"
+    if abs(after - before) < max(0.5 * abs(before), chance + chance_after):
+        told = f"offset: {told}; cure: subtract it"
+    else:
+        told = f"drift: {told}; cure: subtract the line between; charge amplifiers: a longer time constant"
+    yield Finding(told, max(off) > LEVEL_OFF * pulse.peak)
 
 
 def _lasts(silence: Array) -> bool:
@@ -272,7 +276,7 @@ def _impulse(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
 
 
 def _restitution(ratio: float) -> str:
-    return f"the impulse is {ratio:.4g} of mass times velocity, a restitution of {ratio - 1.0:.3g}"
+    return f"the impulse is {ratio:.4g} times mass times velocity, a restitution of {ratio - 1.0:.3g}"
 
 
 def _too_large(pulse: MeasuredPulse, scene: Scene, ratio: float) -> str:

@@ -107,6 +107,17 @@ def test_a_spoiled_curve_is_named(name: str, says: str, spoil: Spoil, lead: floa
     assert "cure: " in str(refused.value)
 
 
+@pytest.mark.parametrize("share", [0.01, 0.015])
+def test_a_small_offset_is_told_and_no_bar(share: float) -> None:
+    """Beside the same curve without it, of which nothing is said."""
+    (time, force), scene = made("polymer-layer", 1.0, 0.005), Scene.load("polymer-layer")
+    assert check_curve(Curve(time, force), scene, "curve") == ()
+    (said,) = check_curve(Curve(time, force + share * force.max()), scene, "curve")
+    found = re.search(r"offset: the force is .* N before touch.*, (\S+) % of the peak; cure: subtract it", said)
+    assert found is not None
+    assert float(found[1]) == pytest.approx(100.0 * share, rel=0.05)
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -114,10 +125,13 @@ def test_a_spoiled_curve_is_named(name: str, says: str, spoil: Spoil, lead: floa
         ("time_s,force_N\n0,1\n1,\n2,3\n", "samples are missing, the first in row 2"),
         ("time_s;pressure_Pa\n0;1\n1;2\n", "force_N: missing column"),
         (
-            "Logger 3000\ntime,force\nms,kip\n0,1\n1,2\n",
-            re.escape("force_N: missing column, with a header of 'time [ms],force [kip]'; ") + ".* in N, kN, .* lbf",
+            "Logger 3000\ntime,force\nms,dyn\n0,1\n1,2\n",
+            re.escape("force_N: missing column, with a header of 'time [ms],force [dyn]'; ")
+            + ".* in N, kN, .* lbf, kip",
         ),
         ("t,left [N],right [N]\n0,1,2\n1,2,3\n", "which is meant"),
+        ("time [ms],acceleration [g]\n0,1\n1,2\n", "cure: a column of the force, mass times acceleration"),
+        ("Time (ms) Force (N)\n0 1\n1 2\n", "force_N: missing column|time_s: missing column"),
     ],
 )
 def test_a_spoiled_file_is_named(text: str, message: str, tmp_path: Path) -> None:
@@ -162,6 +176,8 @@ def test_the_cure_of_a_wrong_header_is_the_right_one(
         ("# time_s,force_N", ",", False, 1.0, 1.0, 0),
         ("Logger 7\n\nTime,Force\n(ms),(N)", ",", False, 1e3, 1.0, 2),
         ("t,F", ",", False, 1.0, 1.0, 2),
+        ("time_s force_N", " ", False, 1.0, 1.0, 1),
+        ("Impact of May 4\nt_ms F_kN", " ", True, 1e3, 1e-3, 4),
     ],
 )
 def test_a_header_is_read_as_it_is_meant(

@@ -102,6 +102,51 @@ def test_lines_are_comments_and_one_command() -> None:
     assert python == 'ops.uniaxialMaterial("JankowskiImpact", 7, 12500000, 0.3, 0.002, -0.01, 1.5)'
 
 
+def iterations(scene: Scene, law: str, step: float, most: int = 40) -> int:
+    """The most that Newton's method takes in a step of the trapezoidal rule until the mass flies back; `most`: none.
+
+    The tangent is that of OpenSees: the law's stiffness with the wrong sign, and none of its damping.
+    """
+    contact, mass = laws.get(law).of(scene), scene.reduced_mass
+    depth, rate, push, worst = 0.0, scene.velocity, 0.0, 0
+    while rate > 0.0 or depth > 0.0:
+        new, past = depth, 4.0 * depth / step**2 + 4.0 * rate / step - push / mass
+        for count in range(1, most + 1):
+            worst = max(worst, count)
+            speed = 2.0 * (new - depth) / step - rate
+            stage = Stage(speed > 0.0, new, scene.velocity)
+            force = float(contact.force(new, speed, stage)) if new > 0.0 else 0.0
+            stiffness = contact.alpha * contact.k * max(new, 0.0) ** (contact.alpha - 1.0)
+            change = (mass * (past - 4.0 * new / step**2) - force) / (4.0 * mass / step**2 - stiffness)
+            new += change
+            if abs(change) < 1e-9 * scene.velocity * step:
+                break
+        if worst == most:
+            return most
+        depth, rate, push = new, 2.0 * (new - depth) / step - rate, force
+    return worst
+
+
+@pytest.mark.parametrize("velocity", [0.1, 5.0])
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("jankowski", {"k": 1e7, "xi": 0.2}),
+        ("mahmoud", {"k": 1e5, "xi": 0.2}),
+        ("hertz", {"k": 1e7, "alpha": 2.0}),
+        ("hertzdamp", {"k": 1e7, "xi": 0.3}),
+    ],
+)
+def test_newtons_method_converges_in_the_steps_that_are_told(
+    name: str, values: dict[str, Any], velocity: float
+) -> None:
+    scene = replace(BODY, velocity=velocity, law=LawChoice(name, values))
+    told = re.search(r"take steps below (\S+) s at", " ".join(exported(name, scene, **values).differences))
+    assert told is not None
+    assert iterations(scene, name, float(told[1])) <= 20
+    assert iterations(scene, name, 4.0 * float(told[1])) == 40
+
+
 def test_tension_at_the_end_is_told_where_the_law_has_none() -> None:
     assert any("pulls" in text for text in exported("kelvin", k=1e5, xi=0.2).differences)
     assert not any("pulls" in text for text in exported("kelvin", k=1e5, xi=0.2, exit="depth").differences)

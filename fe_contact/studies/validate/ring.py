@@ -69,7 +69,7 @@ def make(asked: Request) -> Made:
         plot_rings(curves, where, impacts)
 
     judged = [(curve.case.name, verdict(curve)) for curve in curves]
-    said = [f"{name}: (27)-(29) {one.word}: {one.sentence}" for name, one in judged]
+    said = [f"{name}: the paper's force (27)-(29) {one.word}: {one.sentence}" for name, one in judged]
     said += [f"{one.ring} at {1e3 * one.velocity:.3g} mm/s: (30)-(32) {one.verdict}" for one in impacts]
     section = Section((headline(curves, impacts),), tuple(said), FIGURES, LISTINGS, missed=missed(curves, impacts))
     return Made(section, write)
@@ -80,9 +80,9 @@ def headline(curves: Sequence[RingCurve], impacts: Sequence[RingStruck]) -> Head
     words = Counter(verdict(curve).word for curve in curves)
     pressed = ", ".join(f"{where} for {words[word]}" for word, where in DEPTHS.items())
     held = sum(one.holds for one in impacts)
-    said = f"Of {len(curves)} rings pressed slowly, the paper's (27)-(29) hold {pressed}"
+    said = f"Of {len(curves)} rings pressed slowly, the paper's force over depth (27)-(29) holds {pressed}"
     word = HOLDS if held == len(impacts) and set(words) == {"holds"} else DIFFERS
-    return Headline(word, f"{said}; its (30)-(32) hold in {held} of {len(impacts)} impacts on them.")
+    return Headline(word, f"{said}; its impact by (30)-(32) holds in {held} of {len(impacts)} impacts on them.")
 
 
 MEMBER = ReportPart(
