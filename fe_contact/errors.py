@@ -64,6 +64,15 @@ class MemoryTooSmall(NotReached):
         super().__init__(f"contact radius {radius:.6g} m exceeds the planned one; {cure}")
 
 
+class RatioNotKnown(NotReached):
+    """A step so long, or so short, that the body was not condensed for the ratio of its shear to its bulk modulus."""
+
+    def __init__(self, ratio: float, low: float, high: float) -> None:
+        known = f"the body is known from {low:.3g} to {high:.3g}"
+        cure = "cure: an earlier motion.end_time, or more numerics.steps"
+        super().__init__(f"a step in which the shear modulus is {ratio:.3g} of the bulk modulus; {known}; {cure}")
+
+
 class TooManySteps(NotReached):
     """The march used up its steps before the contact ended."""
 

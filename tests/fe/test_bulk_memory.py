@@ -22,6 +22,7 @@ from fe_contact.bodies.modes import modes, poisson
 from fe_contact.bodies.pressing import held
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import plan
+from fe_contact.errors import RatioNotKnown
 from fe_contact.march.impact import march
 from fe_contact.schemes.base import SCHEMES, MemoryScheme
 from fe_contact.steppers.steps import Strike
@@ -63,6 +64,23 @@ def test_the_modes_have_the_compliance_at_every_ratio(name: str) -> None:
         direct = operator.response[: len(operator.stiffness)]
         error = np.linalg.norm(found.compliance(*moduli(operator.poisson)) - direct, 2) / np.linalg.norm(direct, 2)
         assert error < 3e-7
+
+
+@pytest.mark.parametrize("name", ["bonded", "ring"])
+def test_a_ratio_far_outside_the_interval_is_refused(name: str) -> None:
+    """Up to where it is not, the compliance is good to a few 1e-5."""
+    body, low, high = BODIES[name], 0.1, 0.15
+    found = modes(body, low, high)
+    for ratio in (low / 1.5, low / 2.9, 1.5 * high, 2.9 * high):
+        operator = operator_of(body, poisson(ratio))
+        direct = operator.response[: len(operator.stiffness)]
+        change = np.linalg.norm(np.linalg.inv(found.stiffness(ratio)) - direct, 2) / np.linalg.norm(direct, 2)
+        assert change < 3e-5
+    for ratio in (low / 3.1, 3.1 * high):
+        with pytest.raises(RatioNotKnown, match=r"known from 0\.1 to 0\.15; cure: an earlier motion\.end_time"):
+            found.stiffness(ratio)
+    stiffer, stiff = (modes(body, 0.1, 2e3).stiffness(ratio) for ratio in (1e9, 1e6))  # volume bends no more there
+    assert np.linalg.norm(stiffer - stiff) < 1e-4 * np.linalg.norm(stiff)
 
 
 def test_more_ratios_make_the_modes_better_by_orders(monkeypatch: pytest.MonkeyPatch) -> None:
