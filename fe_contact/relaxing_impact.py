@@ -23,7 +23,7 @@ from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer, dominant
 from fe_contact.budget.solved import ImpactModel, record, solved
 from fe_contact.budget.variation import SAFETY, Variation, factor
-from fe_contact.errors import FINER_STEPS, MemoryTooSmall, TooManySteps
+from fe_contact.errors import FINER_STEPS, ContactLost, MemoryTooSmall, TooManySteps
 from fe_contact.indentation import COARSEST
 from fe_contact.large_strains import check_impact
 from fe_contact.march.impact import STEPS_ALLOWED, balanced, share_of_rest, step_length, time_left
@@ -47,6 +47,7 @@ PENALTY = 1000.0  # stiffness of the contact
 SMALLEST = 0.2  # contact over the widest one for which the mesh is made
 LAST = 1e-3  # of the expected contact time: with less left the end is read off the trend
 ORDER = 2  # of a step
+FEWEST = 5  # instants that tell a trend to the end
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,6 +121,8 @@ class Marcher:
                 break
             there = self._next(instants, left)
             if there.force <= 0.0 and there.velocity < 0.0:  # before, a first touch between the mesh's points
+                if len(instants) < FEWEST:
+                    raise ContactLost(here.time)
                 separated = True
                 break
             instants.append(there)
@@ -133,7 +136,7 @@ class Marcher:
 
     def _time_left(self, instants: list[Instant]) -> float | None:
         """Until the contact ends, s, while the force falls; None before."""
-        if len(instants) < 5 or instants[-1].velocity >= 0.0:
+        if len(instants) < FEWEST or instants[-1].velocity >= 0.0:
             return None
         last = instants[-3:]
         roots = [one.force ** (1.0 / self.power) for one in last]
@@ -149,6 +152,8 @@ class Marcher:
         slowed = self.scale / (strike.mass * self.solid.unit)
         pull = strike.gravity / self.solid.unit
         depth = here.depth + length * (here.velocity + 0.5 * length * (pull - slowed * here.force))
+        if depth <= 0.0:  # a step over the whole rebound
+            raise ContactLost(here.time)
         fading = Fading.over(self.law.network, length)
         found = self._equilibrium(here, depth, fading)
         balance, force = found.balance, found.rigid_force

@@ -12,6 +12,7 @@ from lumped.errors import BadInput, Fault
 from lumped.numbers import peak
 from lumped.result.gate import MeasuredPulse
 from lumped.result.history import History
+from lumped.result.noise import whiteness
 from lumped.result.score import POINTS, Curve
 
 Array = NDArray[np.float64]
@@ -21,8 +22,8 @@ ENDED = 0.05
 BEYOND = 0.5
 # A law that a scene has to follow is smooth between as many points; more would cost time and tell nothing.
 MOST_POINTS = 2000
-# Noise has no memory: residuals above the first, whose neighbours correlate by more than the second, are no noise.
-EXACT, RANDOM = 1e-5, 0.5
+# Of the peak: what is left of a computed history is no noise, and below this no error of a law either.
+EXACT = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,22 +83,18 @@ class Measured:
         """int F dt over the curve, N s."""
         return float(np.trapezoid(self.force, self.time))
 
-    def seen(self, history: History) -> Curve:
-        """What a curve like this one would have shown of a history: of one cut off nothing after its end."""
-        if self.ended:
-            return Curve(history.time, history.force)
-        own = self.time[: self.points]
-        return Curve(own, history.force_at(own))
-
     def error_of(self, force: Array) -> Array:
         """The weighted residual of a force at the times, shape (n,), relative to the peak."""
         return np.asarray(self.weight * (force - self.force) / self.peak)
 
+    def normalized_error(self, force: Array) -> float:
+        """The error "(20)", "(21)" of a force at the times, shape (n,): norm of what differs over that of the curve."""
+        return float(np.linalg.norm(self.error_of(force)) / np.linalg.norm(self.weight * self.force / self.peak))
+
     def systematic(self, error: Array) -> bool:
         """Whether residuals show what a law cannot follow, and not noise alone."""
         own = error[: self.points]
-        power = float(own @ own)
-        return power > EXACT**2 * own.size and float(own[1:] @ own[:-1]) > RANDOM * power
+        return float(own @ own) > EXACT**2 * own.size and whiteness([own]).of_the_law
 
 
 def _spread(time: Array) -> NDArray[np.intp]:

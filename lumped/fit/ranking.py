@@ -12,12 +12,12 @@ import numpy as np
 from lumped import laws
 from lumped.errors import BadInput, NotReached
 from lumped.fit.measured import Measured
-from lumped.fit.noise import Whiteness, whiteness
 from lumped.fit.record import LEVEL, Fit
 from lumped.fit.search import search
 from lumped.fit.space import TOUCH, default_free
 from lumped.numbers import Array
 from lumped.progress import Progress, silent
+from lumped.result.noise import Whiteness, whiteness
 from lumped.result.score import Curve
 from lumped.scene.scene import Scene
 from lumped.schema import Table

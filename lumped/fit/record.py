@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -48,9 +47,10 @@ class Fit:
     """A law fitted to a curve.
 
     `parameters` are the free ones, in the order of `covariance`, SI units, and `correlation`, a ratio, both (p, p);
-    `held` the others that were given. `normalized_error` is "(20)", "(21)". `depth` is half of the greatest depth,
-    m, and `force_at_depth` the force there in the approach: known well even where stiffness and exponent are not.
-    `scene` holds the fitted law, `result` is its impact, `history` that on the clock of the `curve` it was fitted to.
+    `held` the others that were given. `normalized_error` is "(20)", "(21)" over the points of the fit. `depth` is half
+    of the greatest depth, m, and `force_at_depth` the force there in the approach: known well even where stiffness and
+    exponent are not. `scene` holds the fitted law, `result` is its impact, `history` that on the clock of the `curve`
+    it was fitted to.
     """
 
     law: str
@@ -91,8 +91,8 @@ class Fit:
 
     @property
     def error_in_words(self) -> str:
-        """The normalized error; see :func:`error_in_words`."""
-        return error_in_words(self.normalized_error)
+        """The normalized error in per cent."""
+        return f"{100.0 * self.normalized_error:.3g} %"
 
     @property
     def values(self) -> dict[str, float]:
@@ -141,8 +141,3 @@ def write_failure(directory: Path, law: str, message: str) -> None:
     """Write the fit.json of a search that did not converge; it takes the place of an older fit. Raises CannotWrite."""
     content = {"schema": SCHEMA, "law": law, "converged": False, "message": message, "parameters": None}
     publish(directory, lambda folder: write_json(folder / RECORD, content), RECORD)
-
-
-def error_in_words(error: float) -> str:
-    """A normalized error in per cent; infinite where an impact outlasts the curve so far that no time compares them."""
-    return f"{100.0 * error:.3g} %" if math.isfinite(error) else "infinite (the law's impact outlasts the curve)"

@@ -40,7 +40,7 @@ from lumped.laws._power_law import spring_contact_time, spring_of_peak
 from lumped.laws.base import check_mass, simulate
 from lumped.progress import Progress, silent
 from lumped.result.history import History
-from lumped.result.score import Curve, normalized_error
+from lumped.result.score import Curve
 from lumped.scene.scene import Scene
 from lumped.scene.tables import LawChoice
 from lumped.solvers.point.bodies import Stage
@@ -109,7 +109,7 @@ def search(
         held=space.held,
         covariance=certainty.covariance,
         correlation=certainty.correlation,
-        normalized_error=normalized_error(curve, measured.seen(history)),
+        normalized_error=measured.normalized_error(history.force_at(measured.time)),
         depth=certainty.depth,
         force_at_depth=certainty.force_at_depth,
         peak_held=peak,

@@ -10,13 +10,13 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.fit.noise import Whiteness, autocovariance, memory, whitened, whiteness
 from lumped.fit.profile import open_side
 from lumped.identify.ensemble import posterior_of
 from lumped.identify.histories import Histories, Noise
 from lumped.identify.profile import LikelihoodProfile, Valley, correlation_of, quantile
 from lumped.identify.record import ByReference, FittedCurve, Identified, Interval, Posterior, ToldValley, hull
 from lumped.numbers import Array
+from lumped.result.noise import Whiteness, autocovariance, memory, whitened, whiteness
 
 CORRELATED = 0.95  # named in a warning
 NONE = "none"

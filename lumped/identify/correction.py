@@ -80,7 +80,7 @@ def _bars(histories: Histories, sought: Array) -> Array:
 
 
 def _largest(bar: Array, colour: Array) -> Array:
-    """The most that is new in every row of a column within its bar, as :func:`lumped.fit.noise.whitened` sees it."""
+    """The most that is new in every row of a column within its bar, as :func:`lumped.result.noise.whitened` sees it."""
     rows = bar.size - colour.size
     found = bar[colour.size :].copy()
     for lag, a in enumerate(colour.tolist(), start=1):

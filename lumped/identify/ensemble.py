@@ -15,11 +15,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.fit.noise import autocovariance
 from lumped.identify.histories import Histories
 from lumped.identify.profile import LikelihoodProfile
 from lumped.identify.record import LEVEL, Posterior
 from lumped.numbers import Array
+from lumped.result.noise import autocovariance
 
 STRETCH = 2.0  # the authors' choice: a move lands between 1/2 and 2 of the distance
 FADED = 0.05  # a correlation below which a walker has forgotten where it was

@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 
 from lumped.errors import BadInput, NotReached
 from lumped.fit.measured import means
-from lumped.fit.noise import whitened
 from lumped.identify.keys import FreeKey, SceneFile
 from lumped.laws import ting
 from lumped.laws._hereditary import once
 from lumped.numbers import Array
 from lumped.result.gate import MeasuredPulse
 from lumped.result.history import LEAST_ROWS, History
+from lumped.result.noise import whitened
 from lumped.result.score import Curve
 from lumped.scene.scene import Scene
 
@@ -120,7 +120,7 @@ class Correction:
 
 @dataclass(frozen=True, eq=False)
 class Noise:
-    """Of one curve: the deviation of what is new in every row, N, and the colour, see :mod:`lumped.fit.noise`."""
+    """Of one curve: the deviation of what is new in every row, N, and the colour, see :mod:`lumped.result.noise`."""
 
     deviation: float
     colour: Array

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from lumped.fit.noise import Whiteness
 from lumped.numbers import Array
+from lumped.result.noise import Whiteness
 from lumped.schema import Table
 from lumped.schema.csv_file import write_columns, write_csv
 from lumped.schema.json_file import plain, write_json

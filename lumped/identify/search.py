@@ -13,7 +13,6 @@ from dataclasses import replace
 import numpy as np
 
 from lumped.errors import BadInput, Fault, NotReached
-from lumped.fit.noise import colour_of, colour_of_corner, whitened
 from lumped.fit.profile import REACHED
 from lumped.identify.histories import Histories, Noise, Samples
 from lumped.identify.keys import FREE, FreeKey, SceneFile, free_keys, starting_places
@@ -22,6 +21,7 @@ from lumped.laws import ting
 from lumped.laws._hereditary import problem_of
 from lumped.laws.base import check_mass
 from lumped.numbers import Array
+from lumped.result.noise import colour_of, colour_of_corner, whitened
 from lumped.result.score import Curve
 
 TOLERANCE, MOST_STEPS = 1e-6, 60  # of the least squares: relative changes that end it; work

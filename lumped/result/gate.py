@@ -10,12 +10,14 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from lumped.errors import BadInput, Fault
 from lumped.numbers import Array
 from lumped.result.curve_file import FORCE, TIME
+from lumped.result.noise import memory
 from lumped.result.score import Curve
 from lumped.scene.geometry import stiffest_impact
 from lumped.scene.scene import Scene
@@ -85,7 +87,7 @@ class MeasuredPulse:
     @cached_property
     def smooth(self) -> Array:
         """The force, N, averaged over neighbours where it is noisy, (n,)."""
-        if self.noise < NOISE_SHARE * float(np.abs(self.force).max()):
+        if not self.noisy:
             return self.force
         return np.convolve(self.force, np.full(self.window, 1.0 / self.window), mode="same")
 
@@ -93,6 +95,16 @@ class MeasuredPulse:
     def window(self) -> int:
         """Rows over which noise is averaged."""
         return max(1, int(SMOOTHED * np.count_nonzero(self.force > 0.5 * self.force.max()))) | 1
+
+    @property
+    def noisy(self) -> bool:
+        """Whether so much noise is there that it is averaged."""
+        return self.noise >= NOISE_SHARE * float(np.abs(self.force).max())
+
+    @property
+    def scatter(self) -> float:
+        """How far the average over neighbours may lie from the force by noise, N."""
+        return DEVIATIONS * self.noise / math.sqrt(self.window)
 
     @cached_property
     def peak(self) -> float:
@@ -102,7 +114,7 @@ class MeasuredPulse:
     @cached_property
     def level(self) -> float:
         """Above it the bodies press, N."""
-        return max(LEVEL * self.peak, DEVIATIONS * self.noise / math.sqrt(self.window))
+        return max(LEVEL * self.peak, self.scatter)
 
     @cached_property
     def rows(self) -> slice:
@@ -148,12 +160,30 @@ class MeasuredPulse:
         time, force = self.time[near], self.force[near]
         return float(np.trapezoid(force, time)), self.noise * float(np.sqrt(np.sum(np.diff(time) ** 2)))
 
-    def level_of(self, silence: Array) -> tuple[float, float]:
+    def level_of(self, silence: Array) -> Silence:
         """The mean of a silence, N, and how far from zero chance may move it; zero and inf where it is too short."""
         if silence.size < LEAST_ROWS:
-            return 0.0, math.inf
-        chance = DEVIATIONS * float(silence.std()) / math.sqrt(silence.size / self.window)
-        return float(silence.mean()), max(OFF_A_LITTLE * self.peak, chance)
+            return Silence(0.0, math.inf, 0)
+        rows = silence.size / memory(silence - silence.mean())
+        return Silence(float(silence.mean()), DEVIATIONS * float(silence.std()) / math.sqrt(rows), silence.size)
+
+
+class Silence(NamedTuple):
+    """The mean of so many ``rows`` of a silence, N, and how far ``chance`` may move it."""
+
+    mean: float
+    chance: float
+    rows: int
+
+    def off(self, floor: float) -> bool:
+        """Whether it is another than zero, by more than a floor, N, and than chance."""
+        return abs(self.mean) > max(floor, self.chance)
+
+    def with_another(self, other: Silence) -> Silence:
+        """Both silences as one."""
+        rows = self.rows + other.rows
+        mean = (self.rows * self.mean + other.rows * other.mean) / rows
+        return Silence(mean, math.hypot(self.rows * self.chance, other.rows * other.chance) / rows, rows)
 
 
 Check = Callable[[MeasuredPulse, Scene], Iterator[Finding]]
@@ -229,16 +259,19 @@ def _zero(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
     """A silence that is none: an offset where it stands alike before and after, else a drift; a small one is no bar."""
     if not _single(scene):
         return
-    (before, chance), (after, chance_after) = pulse.level_of(pulse.before), pulse.level_of(pulse.after)
-    if after > 0.0 and (scene.gravity or not _lasts(pulse.after)):
-        after, chance_after = 0.0, math.inf  # a weight at rest, or a slow end
-    silences = ((before, chance, "before touch"), (after, chance_after, "after the contact"))
-    off = [abs(mean) for mean, spread, _ in silences if abs(mean) > spread]
+    before, after = pulse.level_of(pulse.before), pulse.level_of(pulse.after)
+    if after.mean > 0.0 and (scene.gravity or not _lasts(pulse.after)):
+        after = Silence(0.0, math.inf, 0)  # a weight at rest, or a slow end
+    known = [one for one in (before, after) if one.rows]
+    alike = abs(after.mean - before.mean) < max(0.5 * abs(before.mean), before.chance + after.chance)
+    judged = [known[0].with_another(known[1])] if alike and len(known) > 1 else known
+    off = [abs(one.mean) for one in judged if one.off(OFF_A_LITTLE * pulse.peak)]
     if not off:
         return
-    known = " and ".join(f"{mean:.3g} N {when}" for mean, spread, when in silences if spread < math.inf)
-    told = f"the force is {known}, {100.0 * max(off) / pulse.peak:.2g} % of the peak"
-    if abs(after - before) < max(0.5 * abs(before), chance + chance_after):
+    silences = ((before, "before touch"), (after, "after the contact"))
+    said = " and ".join(f"{one.mean:.3g} N {when}" for one, when in silences if one.rows)
+    told = f"the force is {said}, {100.0 * max(off) / pulse.peak:.2g} % of the peak"
+    if alike:
         told = f"offset: {told}; cure: subtract it"
     else:
         told = f"drift: {told}; cure: subtract the line between; charge amplifiers: a longer time constant"

@@ -17,6 +17,7 @@ from fe_contact import reference, relaxing_impact, run
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.curve import Curve, extrapolated
 from fe_contact.budget.solved import ImpactModel
+from fe_contact.errors import ContactLost
 from fe_contact.large_strains import ELASTIC
 from fe_contact.plastic.impact import YIELDING
 from fe_contact.relaxing_impact import RELAXING, Instant, Marcher, plan
@@ -350,3 +351,11 @@ def test_a_body_is_meshed_by_the_contact_that_is_expected_of_any_size() -> None:
     assert wide[0] == pytest.approx(wide[1])
     assert 1.0 < wide[0] < 2.0
     assert meshes[0] == meshes[1]
+
+
+@pytest.mark.parametrize("steps", [8, 16])
+def test_steps_too_long_for_the_rebound_are_named(steps: int) -> None:
+    """A step that leads the striker farther back than the first touch, or from the turn to separation at once."""
+    coarse = {"steps": steps, "elements_per_contact": 1.0}
+    with pytest.raises(ContactLost, match=r"no contact after t = 0\.0\S* s; cure: raise numerics\.steps"):
+        run("paper-ring-finite", tolerance=0.1, numerics=coarse)

@@ -13,6 +13,7 @@ import pytest
 from lumped import BadInput, Fit, History, NotReached, Scene, fit, laws, simulate
 from lumped.fit.certainty import inverse
 from lumped.fit.measured import Measured
+from lumped.fit.ranking import _ranked
 from lumped.fit.search import starts
 from lumped.fit.space import space_of
 from lumped.result.score import Curve
@@ -311,7 +312,31 @@ def test_bounds_hold_and_are_told() -> None:
 
 def test_what_a_law_cannot_follow_is_not_called_noise() -> None:
     found = fit(history("jankowski", **TRUTHS["jankowski"]), "kelvin", BODY)
-    assert any("law's own error" in text for text in found.warnings)
+    assert any("the law itself errs" in text for text in found.warnings)
+
+
+@pytest.mark.parametrize("deviation", [0.002, 0.02, 0.2])
+def test_one_fit_and_the_ranking_agree_on_what_is_left(deviation: float, polymer: Scene) -> None:
+    """Of a curve of Ting's law with noise: neither finds more than noise by that law, both alike by another."""
+    curve = noisy(history("ting", polymer), deviation, np.random.default_rng(11))
+    for law in ("ting", "hunt_crossley", "hertz"):
+        alone = fit(curve, law, polymer)
+        left = _ranked(curve, alone).whiteness
+        assert left is not None
+        assert any("the law itself errs" in text for text in alone.warnings) == left.of_the_law
+        assert not (law == "ting" and left.of_the_law)
+
+
+def test_the_normalized_error_does_not_follow_the_clock() -> None:
+    """A record that begins before the touch, on two clocks: the same points, the same norm of what is left of them."""
+    own = history("jankowski", **TRUTHS["jankowski"])
+    time = np.linspace(-0.5, 1.5, 300) * float(own.time[-1])
+    force = own.force_at(time) + 0.02 * own.force.max() * np.random.default_rng(3).normal(size=time.size)
+    early, late = Curve(time, force), Curve(time - time[0], force)
+    found = [fit(curve, "jankowski", BODY, ("k", "xi", "touch")).normalized_error for curve in (early, late)]
+    assert found[1] == pytest.approx(found[0], rel=1e-6)
+    assert found[0] <= fit(early, "jankowski", BODY, ("k", "xi")).normalized_error
+    assert found[0] == pytest.approx(0.02 * force.max() * np.sqrt(time.size) / np.linalg.norm(force), rel=0.2)
 
 
 def test_the_damping_may_be_the_restitution() -> None:

@@ -19,13 +19,13 @@ from scipy.signal import butter, lfilter
 from scipy.special import stdtrit
 
 from lumped import BadInput, Scene, identify, laws, simulate
-from lumped.fit.noise import colour_of, memory, whitened, whiteness
 from lumped.identify import keys as free_keys
 from lumped.identify.ensemble import Linearized, draws_of
 from lumped.identify.histories import Impact
 from lumped.identify.keys import SceneFile
 from lumped.numbers import Array
 from lumped.result.history import History
+from lumped.result.noise import colour_of, memory, whitened, whiteness
 from lumped.result.score import Curve
 
 SEED = 20261125

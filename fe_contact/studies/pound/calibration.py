@@ -14,7 +14,6 @@ from fe_contact.progress import Progress, silent
 from fe_contact.studies.transfer.study import CALIBRATIONS, Calibration, calibrated
 from fe_contact.studies.transfer.verdict import QUANTITIES
 from lumped.errors import BadInput, Fault, shown
-from lumped.fit.record import error_in_words
 from lumped.fit.space import own_keys
 from lumped.laws._force_law import ForceLaw
 from lumped.pounding.case_file import PoundingCase
@@ -148,7 +147,7 @@ class CalibratedStudy:
         """What the choice of a law changes, a line a law."""
         first, name = self.study.main.measures(), next(iter(self.study.motions))
         lines = [f"bar of the reference, by {name}: {_changes(self.bars, first, '+-')}"]
-        lines += [f"normalized error of {law} on the reference: {error_in_words(e)}" for law, e in self.errors.items()]
+        lines += [f"normalized error of {law} on the reference: {100.0 * e:.3g} %" for law, e in self.errors.items()]
         lines += [f"{other} in the place of {name}: {_changes(one, first, '')}" for other, one in self.choice.items()]
         return lines
 
