@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -132,6 +133,34 @@ def test_the_reference_measured_is_within_its_own_bar(polymer: tuple[Solved, Res
     assert comparison.judgements[0].score_percent == pytest.approx(0.0, abs=1e-9)
     assert comparison.judgements[0].errors["restitution"] is None
     assert verdicts(comparison)[0] == "the reference agrees with the measured curve within its error bar"
+
+
+@pytest.mark.parametrize("rows", [300, 3000])
+@pytest.mark.parametrize("noise", [0.002, 0.005, 0.02, 0.05])
+def test_noise_is_no_deviation(polymer: tuple[Solved, Result], noise: float, rows: int) -> None:
+    """The reference with noise, and silence around it: no verdict finds anything, of ten records none."""
+    history = polymer[1].history
+    time = np.linspace(-0.5, 1.6, rows) * float(history.time[-1])
+    for seed in range(10):
+        shaken = noise * history.force.max() * np.random.default_rng(seed).normal(size=rows)
+        comparison = compare(*polymer, (), Measured(time, history.force_at(time) + shaken))
+        said = re.fullmatch(
+            r"the reference agrees with the measured curve within its error bar and the noise, (\S+) % of the peak",
+            verdicts(comparison)[0],
+        )
+        assert said is not None, (seed, verdicts(comparison)[0])
+        assert float(said[1]) == pytest.approx(100.0 * noise, rel=0.3)
+
+
+@pytest.mark.parametrize(("stretch", "phrase"), [(1.15, "longer"), (0.85, "shorter")])
+def test_a_deviation_is_found_beneath_the_noise(polymer: tuple[Solved, Result], stretch: float, phrase: str) -> None:
+    history = polymer[1].history
+    time = np.linspace(-0.5, 1.6, 600) * float(history.time[-1])
+    shaken = 0.02 * history.force.max() * np.random.default_rng(1).normal(size=time.size)
+    (said, *_) = verdicts(compare(*polymer, (), Measured(time, history.force_at(time / stretch) + shaken)))
+    found = re.search(rf"the measured contact is (\S+) % {phrase}, beyond the noise, (?:1\.9|2\S*) % of the peak", said)
+    assert found is not None
+    assert float(found[1]) == pytest.approx(15.0, abs=3.0)
 
 
 def test_a_law_that_ends_far_later_leaves_the_reference_readable(polymer: tuple[Solved, Result]) -> None:

@@ -87,9 +87,13 @@ class MeasuredPulse:
     @cached_property
     def smooth(self) -> Array:
         """The force, N, averaged over neighbours where it is noisy, (n,)."""
+        return self.averaged(self.force)
+
+    def averaged(self, force: Array) -> Array:
+        """A force at the same rows, (n,), N, averaged as this one is."""
         if not self.noisy:
-            return self.force
-        return np.convolve(self.force, np.full(self.window, 1.0 / self.window), mode="same")
+            return force
+        return np.convolve(force, np.full(self.window, 1.0 / self.window), mode="same")
 
     @cached_property
     def window(self) -> int:
@@ -103,8 +107,8 @@ class MeasuredPulse:
 
     @property
     def scatter(self) -> float:
-        """How far the average over neighbours may lie from the force by noise, N."""
-        return DEVIATIONS * self.noise / math.sqrt(self.window)
+        """How far `smooth` may lie from the force by noise, N."""
+        return DEVIATIONS * self.noise / math.sqrt(self.window if self.noisy else 1)
 
     @cached_property
     def peak(self) -> float:

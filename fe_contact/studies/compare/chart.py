@@ -109,12 +109,13 @@ def _distance(axes: Axes, comparison: Comparison) -> None:
     """|force - reference| over the peak, logarithmic, so that the error bar can be seen."""
     told = comparison.told
     second, span = _time_axis(axes, comparison)
-    times = np.linspace(0.0, span, 1200)
-    inside = times <= told.duration
-    bar = np.where(inside, told.force_error(np.minimum(times, told.duration)), 0.0) / told.peak
-    top = np.maximum(bar[inside], LEAST_SHOWN)
-    axes.fill_between(second * times[inside], LEAST_SHOWN, top, color=style.SKY, alpha=0.45, linewidth=0.0)
+    even = np.linspace(0.0, span, 1200)
+    inside = even[even <= told.duration]
+    top = np.maximum(told.force_error(inside) / told.peak, LEAST_SHOWN)
+    axes.fill_between(second * inside, LEAST_SHOWN, top, color=style.SKY, alpha=0.45, linewidth=0.0)
     for candidate, line in _candidates(comparison):
+        own = isinstance(candidate, Measured)  # between its rows nothing is known
+        times = candidate.time[(candidate.time >= 0.0) & (candidate.time <= span)] if own else even
         distance = np.abs(candidate.force_at(times) - told.force(times)) / told.peak
         ended = times > max(told.duration, float(candidate.time[-1]))
         axes.plot(second * times, np.where(ended, np.nan, np.maximum(distance, 0.5 * LEAST_SHOWN)), **line)

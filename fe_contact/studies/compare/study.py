@@ -8,7 +8,7 @@ law and its scores in CSV, verdict and errors in JSON.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -34,6 +34,7 @@ from lumped.errors import BadInput, FeContactError
 from lumped.laws import get
 from lumped.load_curves.sampled import SampledCurve
 from lumped.progress import counting_steps
+from lumped.result.gate import MeasuredPulse
 from lumped.result.result import RULED_RELATIVE, Result
 from lumped.result.score import Curve as Measured
 from lumped.result.score import score
@@ -53,6 +54,7 @@ WITHIN = "within the reference's error bar"
 DECISIVE = ("history", "held_until_max_depth", "peak_force", "peak_depth", "duration", "restitution")
 SCHEMA = "fe-contact/compare/1"
 MEASURED = "measured"  # what the curve's judgement is called
+SEEN = 1e-3  # look: of the peak, noise worth a word
 FAR_LATER = 9.0  # look: a duration too long by ten times and more is no matter of per cent
 SCORES = (
     "peak_force", "peak_time", "peak_depth", "duration", "restitution", "impulse", "work", "loss", "shape",
@@ -69,13 +71,15 @@ class Judgement:
     bar, as :class:`lumped.Score` has them, work, loss, shape, peak_shift; and, never negative,
     contact_radius_rebound (relative to the largest radius), pressure_rebound (misplaced force over force),
     held_until_max_depth (force, relative to the peak), history (force, norm over norm). ``bars``: how much of
-    an error the error bars of reference and candidate together leave open.
+    an error the error bars of reference and candidate together leave open. ``noise``: of a measured curve, its
+    deviation over the peak; what is left of it in an average over neighbours counts in ``bars``.
     """
 
     name: str
     score_percent: float
     errors: Mapping[str, float | None]
     bars: Mapping[str, float]
+    noise: float = 0.0
 
     def exceeds(self, name: str) -> bool:
         """Whether an error is known, and larger than its bar."""
@@ -166,11 +170,25 @@ def _law(solved: Solved | None, told: Told, reference: Result, law: Result, curv
 
 
 def _curve(told: Told, reference: Result, measured: Measured) -> Judgement:
-    scored = score(reference.history, measured)
+    """Of a noisy curve the average over neighbours, which rounds the reference as much; bars hold the noise left."""
+    pulse, own = MeasuredPulse(measured.time, measured.force), reference.history.force_at(measured.time)
+    steady = replace(measured, force=pulse.smooth + own - pulse.averaged(own))
+    scored = score(reference.history, steady)
     errors: dict[str, float | None] = {name: getattr(scored, name) for name in (*QUANTITIES, *DISTANCES)}
-    errors |= {"contact_radius_rebound": None, "pressure_rebound": None} | force_errors(told, measured)
-    bars = {name: _bar(reference, name) for name in QUANTITIES} | force_bars(told, 0.0)
-    return Judgement(MEASURED, 100 * scored.normalized_error, errors, bars)
+    errors |= {"contact_radius_rebound": None, "pressure_rebound": None} | force_errors(told, steady)
+    noise = pulse.scatter / pulse.peak
+    bars = {name: _bar(reference, name) + noise for name in QUANTITIES} | force_bars(told, noise)
+    if (measured.force < 0.0).any():  # noise does not end where the contact does: durations above one level tell
+        above = _lasting(told, pulse.level)
+        errors |= {"shape": None, "duration": pulse.width / above - 1.0}
+        bars["duration"] += 2.0 * float(np.diff(measured.time).max()) / above
+    return Judgement(MEASURED, 100 * scored.normalized_error, errors, bars, noise=pulse.noise / pulse.peak)
+
+
+def _lasting(told: Told, level: float) -> float:
+    """How long the reference's force is above a level, N, lower than its peak, s."""
+    pressed = np.flatnonzero(told.force(told.time) > level)
+    return float(told.time[pressed[-1]] - told.time[pressed[0]])
 
 
 def _error(reference: Result, law: Result, name: str) -> float | None:
@@ -260,12 +278,15 @@ def _sentence(comparison: Comparison, judgement: Judgement) -> str:
 
 def _of_measured(judgement: Judgement) -> str:
     """A measurement does not err: what differs from it is the reference."""
+    noise = f"the noise, {percent(judgement.noise)} of the peak" if judgement.noise > SEEN else ""
     if not any(judgement.exceeds(name) for name in DECISIVE):
-        return "the reference agrees with the measured curve within its error bar"
+        beside = f" and {noise}" if noise else ""
+        return f"the reference agrees with the measured curve within its error bar{beside}"
     share = percent(judgement.errors["held_until_max_depth"] or 0.0)
     parts = [f"the reference differs from the measured curve by up to {share} of the peak before maximum depth"]
     parts += _signed(judgement, "peak_force", "the measured peak is {} lower", "the measured peak is {} higher")
     parts += _signed(judgement, "duration", "the measured contact is {} shorter", "the measured contact is {} longer")
+    parts += [f"beyond {noise}"] if noise else []
     return ", ".join(parts)
 
 
