@@ -15,9 +15,14 @@ from lumped.identify.ensemble import posterior_of
 from lumped.identify.histories import Histories, Noise
 from lumped.identify.profile import LikelihoodProfile, Valley, correlation_of, quantile
 from lumped.identify.record import ByReference, FittedCurve, Identified, Interval, Posterior, ToldValley, hull
+from lumped.laws import ting
+from lumped.laws.base import simulate
 from lumped.numbers import Array
+from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.noise import Whiteness, autocovariance, memory, whitened, whiteness
+from lumped.result.result import LedgerEntry, percent
 
+LEDGER_TOLERANCE = 1e-2  # of the impact that scales what is left out
 CORRELATED = 0.95  # named in a warning
 NONE = "none"
 AT_END = 1e-3  # safety: of a place; a descent that a limit stops ends a little before it
@@ -46,6 +51,7 @@ def answer(
     ends = dict(_ends(histories, valleys[0]))
     warnings = (
         *_of_residuals(tested, widened, curves),
+        *_of_the_model(histories, sought, parameters, by_reference is None),
         *(_of_end(name, end, parameters[name]) for name, end in ends.items()),
         *_warnings(parameters, told),
         *_of_a_low_pass(histories, sought, parameters),
@@ -148,6 +154,32 @@ def _of_residuals(tested: Whiteness, widened: float, curves: Sequence[FittedCurv
         told = f"neighbouring rows of what is left are opposed (Ljung-Box, p = {tested.probability:.1g})"
         cause = "no law's error is so, but noise of less memory than it was taken for"
         yield f"{told}: {cause}; the intervals are not to be trusted; cure: --corner of the instrument, or none"
+
+
+def _of_the_model(
+    histories: Histories, sought: Array, parameters: Mapping[str, Interval], by_law: bool
+) -> Iterator[str]:
+    """Effects that the law, or the scene's own model, leaves out, and that change the force by more than noise does.
+
+    About as much as by the force a number errs by them, and no residual shows it.
+    """
+    noises = [noise.deviation / one.peak for noise, one in zip(histories.noises, histories.samples, strict=True)]
+    least = min((one.share for one in parameters.values() if one.share is not None), default=max(noises))
+    largest = dict[str, LedgerEntry]()
+    for one in histories.samples:
+        scene = histories.file.scene(histories.keys, sought[: len(histories.keys)], one.own)
+        found = simulate(ting.of(scene), scene, LEDGER_TOLERANCE)
+        own = model_ledger(scene, Peak.of(found.quantities, found.history))
+        for entry in found.model_ledger if by_law else own:
+            before = largest.get(entry.effect, entry)
+            largest[entry.effect] = max(before, entry, key=lambda one: one.size)
+    left = sorted((entry for entry in largest.values() if entry.size > least), key=lambda entry: -entry.size)
+    if left:
+        said = ", ".join(f"{entry.effect} ({percent(entry.size)})" for entry in left)
+        certain = sorted(left, key=lambda entry: not entry.exceeds(least))
+        keys = [entry.setting for entry in certain if entry.key.startswith("model.")]
+        cure = f"; cure: --method fe --set {keys[0]}" if keys else ""
+        yield f"left out, up to so much of the peak force: {said}; the intervals hold the noise alone{cure}"
 
 
 def _of_a_low_pass(histories: Histories, sought: Array, parameters: Mapping[str, Interval]) -> Iterator[str]:

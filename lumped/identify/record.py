@@ -33,6 +33,13 @@ class Interval:
     unit: str
     unfound: tuple[str, ...] = ()
 
+    @property
+    def share(self) -> float | None:
+        """Half of the interval over the value; None where an end is open, or the value none."""
+        if self.low is None or self.high is None or not self.value:
+            return None
+        return 0.5 * (self.high - self.low) / abs(self.value)
+
     def holds(self, value: float) -> bool:
         """Whether a value lies within; an open end lets all through."""
         return (self.low is None or self.low <= value) and (self.high is None or value <= self.high)

@@ -503,6 +503,24 @@ def test_a_solid_is_sought_by_either_set_of_its_names() -> None:
     assert SceneFile.of(table, {}).named_by(["E1", "nu"]).table == table
 
 
+@pytest.mark.parametrize(("velocity", "named"), [(2e-4, False), (0.5, True)])
+def test_an_effect_larger_than_the_intervals_is_named(velocity: float, named: bool) -> None:
+    """Waves in a body struck slowly and fast; the law knows none, and the residuals of its own curve show none."""
+    table = scene(STRIKERS[0], {"law": "elastic", "E": 1e6, "density": 1000.0})
+    table["striker"]["velocity"] = velocity
+    curve = curve_of(np.random.default_rng(SEED), *history_by_springs(table, {}), np.zeros(ROWS))
+    shaken = replace(curve, force=curve.force + 0.005 * curve.force.max() * np.random.default_rng(3).normal(size=ROWS))
+    found = identify({"curve": shaken}, table, ["target.material.E"])
+    assert found.adequate
+    ledger = simulate(laws.ting.of(told := Scene.from_dict(found.table)), told).model_ledger
+    waves = next(entry.size for entry in ledger if entry.effect == "target inertia")
+    half = found.parameters["target.material.E"].share
+    assert half is not None
+    assert (waves > half) == named
+    said = [one for one in found.warnings if one.startswith("left out, up to so much of the peak force: ")]
+    assert any("target inertia" in one and "--method fe --set model.inertia=true" in one for one in said) == named
+
+
 def test_a_spring_that_the_curves_do_not_need_is_named() -> None:
     """A fluid of one branch taken for a solid."""
     rng = np.random.default_rng(SEED)
