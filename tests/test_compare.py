@@ -291,3 +291,5 @@ def test_the_clock_of_a_measured_curve_is_told_by_its_touch(
     assert first["verdict"] == again["verdict"]
     assert main(["compare", "polymer-sphere", "--touch", "0.1"]) == 2
     assert "--touch: '0.1': accepted a time on the clock of --measured" in capsys.readouterr().err
+    assert main([*command, str(tmp_path / "late.csv"), "--touch", "100"]) == 2
+    assert "--touch: 100 s is not in " in capsys.readouterr().err

@@ -62,6 +62,23 @@ def test_a_modulus_that_was_meant_in_gigapascal_is_doubted(
         assert ("are the values in Pa (9 GPa = 9e9)?" in capsys.readouterr().err) == said
 
 
+@pytest.mark.parametrize(
+    ("change", "doubt"),
+    [
+        ("striker.radius=6", "the striker is lighter than air of its size; are its radius in m and its mass in kg?"),
+        ("target.material.E1=1.8", "the modulus relaxes to 1.8 Pa, less than any solid's; are the values in Pa"),
+        ("target.material.E1=1.8e6", ""),
+    ],
+)
+def test_a_size_in_millimetres_and_one_spring_in_megapascal_are_doubted(
+    change: str, doubt: str, empty: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", "polymer-sphere", "--method", "ting", "--set", change]) == 0
+    said = capsys.readouterr().err
+    assert doubt in said
+    assert ("; are " in said) == bool(doubt)
+
+
 @pytest.mark.parametrize("effect", ["gravity", "target inertia", "constant nu against constant bulk modulus"])
 def test_the_option_that_is_named_selects_the_larger_model(effect: str) -> None:
     """As it stands in the sentence it is set, and then the effect is no longer left out."""

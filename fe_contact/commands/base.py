@@ -8,7 +8,7 @@ import json
 import os
 import re
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
@@ -33,6 +33,7 @@ from lumped.schema.files import SCENES, overridden, parse_assignment, parsed
 if TYPE_CHECKING:
     from fe_contact.studies.finite_exponents import StrainedRow
 
+AIR = 1.2  # physics: kg/m3, of air
 SOFTEST = 100.0  # physics: Pa, rho g L: a centimetre of water's density would sink into itself
 DONE, NOT_REACHED = 0, 3  # two of the exit codes of cli, which loads this file only when it is needed
 WIDE = 88  # look: of a help that no terminal bounds
@@ -320,17 +321,22 @@ def report(
         complain(missed)
     if not result.model_sufficient:
         complain(f"the model is too small for the tolerance: {_left_out(result, asked)}")
-    if soft := _too_soft(result.indenter if isinstance(result, Indentation) else result.scene):
-        complain(soft)
+    for doubt in _doubts(result.indenter if isinstance(result, Indentation) else result.scene):
+        complain(doubt)
     return DONE if result.converged else NOT_REACHED
 
 
-def _too_soft(body: Scene | Indenter) -> str:
-    """A doubt about the unit of a modulus that no solid has; empty where there is none."""
-    if body.material is None or body.material.young.glassy >= SOFTEST:
-        return ""
-    told = f"{body.name}: the modulus is at most {body.material.young.glassy:.3g} Pa, less than any solid's"
-    return f"{told}; are the values in Pa (9 GPa = 9e9)?"
+def _doubts(body: Scene | Indenter) -> Iterator[str]:
+    """Of the unit of a modulus that no solid has, and of a size or mass that makes a ball lighter than air."""
+    if body.material is not None:
+        young = body.material.young
+        least, verb = (young.equilibrium, "relaxes to") if young.glassy >= SOFTEST else (young.glassy, "is at most")
+        if 0.0 < least < SOFTEST:
+            told = f"{body.name}: the modulus {verb} {least:.3g} Pa, less than any solid's"
+            yield f"{told}; are the values in Pa (9 GPa = 9e9)?"
+    volume = body.shape.whole_mass(1.0) if isinstance(body, Scene) and body.shape is not None else None
+    if volume and isinstance(body, Scene) and 0.0 < body.mass < AIR * volume:
+        yield f"{body.name}: the striker is lighter than air of its size; are its radius in m and its mass in kg?"
 
 
 def _left_out(result: Result | Indentation, asked: Model) -> str:

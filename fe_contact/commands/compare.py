@@ -51,6 +51,10 @@ def _measured(args: argparse.Namespace) -> Curve | None:
     if args.measured is None:
         return None
     curve = read_curve(args.measured)
+    first, last = float(curve.time[0]), float(curve.time[-1])
+    if touch and not first <= touch <= last:
+        reason = f"{touch:g} s is not in {args.measured}, which is from {first:.4g} to {last:.4g} s"
+        raise BadInput(Fault("--touch", "", f"{reason}; accepted: a time on its clock, s"))
     return replace(curve, time=curve.time - touch)
 
 

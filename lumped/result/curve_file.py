@@ -29,7 +29,7 @@ SPACES = " "  # one or more
 SEPARATORS = ("\t", ";", ",", SPACES)  # the first that tells a time from a force
 PREAMBLE = 40  # work: lines in which a header is looked for
 WORD = re.compile(r"[^\W_]+")
-ACCELERATION = re.compile(r"\b(acc|acceleration|beschleunigung)(?![^\W_])", re.IGNORECASE)
+ACCELERATION = re.compile(r"\b(acc|acceleration|beschleunigung)(?![^\W_])|\ba\W+(g|m/s)", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -188,7 +188,11 @@ def _header(source: str, lines: Sequence[str]) -> CurveHeader:
     header = f"with a header of {shown(nearest)}" if nearest else "of a file without a line"
     said = f"missing column, {header}; accepted: time_s,force_N, or t [ms];F [kN] and the like"
     units = {one.plain: ", ".join(filter(str.isascii, one.units)) for one in lacking}
-    cure = "; cure: a column of the force, mass times acceleration" if ACCELERATION.search(nearest) else ""
+    cure = ""
+    if ACCELERATION.search(nearest):
+        cure = "; cure: a column of the force, mass times acceleration"
+    elif nearest and all(map(_is_number, filter(None, re.split(r"[\s;,]+", nearest)))):
+        cure = "; cure: a first line that names the columns, as time_s,force_N"
     raise BadInput(Fault(source, name, f"{said}, in {known}{cure}") for name, known in units.items())
 
 

@@ -290,7 +290,7 @@ def _lasts(silence: Array) -> bool:
 def _touch(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
     if _single(scene) and not -EARLY * pulse.width <= pulse.start <= LATE * pulse.width:
         said = f"pre-trigger: the force begins before {pulse.start:.6g} s, and time zero has to be the first touch"
-        cure = "identify, fit with touch in --free beside what is sought, or compare --touch, with what these find"
+        cure = "identify, fit with touch in --free beside what is sought, or compare --touch S, as they find it"
         yield Finding(f"{said}; cure: {cure}")
 
 

@@ -20,6 +20,7 @@ from lumped.materials.networks import NETWORKS
 from lumped.schema import Table
 from lumped.schema.files import SCENES, overridden, parsed
 from lumped.schema.keys import (
+    UNKNOWN_KEY,
     Choice,
     Count,
     Described,
@@ -208,6 +209,7 @@ class TableReader:
     """
 
     TABLES: ClassVar[tuple[str, ...]]
+    HOMES: ClassVar[Mapping[str, Mapping[str, Key]]] = {}  # tables whose keys are often written into another one
 
     def __init__(self, source: str, raw: Table, folder: Path = Path()) -> None:
         self.source = source
@@ -222,7 +224,7 @@ class TableReader:
         names = [*NAME_KEYS, *self.TABLES]
         for fault in faults:
             if fault.key not in NAME_KEYS:
-                fault = replace(fault, message=unknown_key(fault.key, names))
+                fault = self._led_home(replace(fault, message=unknown_key(fault.key, names)))
             elif fault.key not in top:
                 fault = replace(fault, message=f"missing, and the file's own name will not do: {fault.message}")
             self.faults.append(fault)
@@ -231,8 +233,16 @@ class TableReader:
     def checked(self, path: str, table: Table, keys: Mapping[str, Key]) -> Table:
         """The accepted values of a table; what is refused becomes a fault."""
         values, faults = read_table(self.source, path, table, keys)
-        self.faults += faults
+        self.faults += (self._led_home(fault) for fault in faults)
         return values
+
+    def _led_home(self, fault: Fault) -> Fault:
+        """The fault of a key that stands in the wrong table with the right one named."""
+        name = fault.key.rpartition(".")[2]
+        homes = [home for home, keys in self.HOMES.items() if name in keys and f"{home}.{name}" != fault.key]
+        if not homes or not fault.message.startswith(UNKNOWN_KEY):
+            return fault
+        return replace(fault, message=f"{fault.message.partition('; did you')[0]}; {name} stands in [{homes[0]}]")
 
     def made(self, path: str, make: Callable[..., Made], values: Table, *parts: str) -> Made | None:
         """What is made of a table's checked values; None with a fault noted, which one of `parts` found at its key."""
@@ -264,6 +274,11 @@ class SceneReader(TableReader):
     """Makes a scene, or what a slow indentation needs of it, of the tables of a scene file."""
 
     TABLES = ("striker", "target", "model", "motion", "law", "numerics")
+    HOMES: ClassVar[Mapping[str, Mapping[str, Key]]] = {
+        "striker": STRIKER_KEYS,
+        "model": keys_of(Model),
+        "motion": keys_of(Motion),
+    }
 
     def __init__(self, source: str, raw: Table, folder: Path = Path(), known: Known | None = None) -> None:
         """`known`: parts of other scenes of this folder, taken where the very same table describes them here."""

@@ -121,6 +121,7 @@ class Packaged:
 
 
 SCENES = Packaged("scenes", "scene")
+DECIMAL_COMMA = re.compile(r"=\s*[+-]?\d+,\d")
 
 
 def parsed(path: Path) -> Table:
@@ -213,4 +214,7 @@ def _line_of(error: ValueError, text: str) -> str:
     """The line that an error names, so that it names the key too; empty where it names none."""
     number, lines = LINE.search(str(error)), text.splitlines()
     at = int(number[1]) if number else 0
-    return f": {shown(lines[at - 1].strip())}" if 1 <= at <= len(lines) else ""
+    if not 1 <= at <= len(lines):
+        return ""
+    cure = "; cure: a decimal point" if DECIMAL_COMMA.search(lines[at - 1]) else ""
+    return f": {shown(lines[at - 1].strip())}{cure}"

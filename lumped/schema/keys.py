@@ -6,6 +6,7 @@ generous but finite: inside them no product of a scene's scales leaves double pr
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
@@ -17,6 +18,8 @@ from typing import ClassVar, Generic, Protocol, TypeVar, get_args, get_type_hint
 from lumped.errors import SHOWN_FAULTS, BadInput, Fault, nearest, shown
 from lumped.schema import Table
 
+UNKNOWN_KEY = "unknown key"
+NUMERAL = re.compile(r"[+-]?\d")  # how a text begins that may be meant as a number
 T = TypeVar("T")
 Made = TypeVar("Made", covariant=True)
 
@@ -250,7 +253,7 @@ def unknown_key(name: str, names: Iterable[str]) -> str:
     """What to say of a key which is none of `names`."""
     names = sorted(names)
     meant = [key for key in names if name.lower() in ALSO_CALLED.get(key, ())]
-    return f"unknown key; accepted: {', '.join(names)}{nearest(meant[0] if meant else name, names)}"
+    return f"{UNKNOWN_KEY}; accepted: {', '.join(names)}{nearest(meant[0] if meant else name, names)}"
 
 
 def _join(path: str, name: str) -> str:
@@ -258,7 +261,8 @@ def _join(path: str, name: str) -> str:
 
 
 def _refused(kind: Kind, value: object) -> str:
-    return f"{shown(value)} is not accepted; accepted: {kind.accepted}"
+    written_so = "; a number has a decimal point and no unit" if NUMERAL.match(str(value)) else ""
+    return f"{shown(value)} is not accepted; accepted: {kind.accepted}{written_so if isinstance(value, str) else ''}"
 
 
 def keys_of(make: Callable[..., object]) -> Mapping[str, Key]:

@@ -131,6 +131,8 @@ def test_a_small_offset_is_told_and_no_bar(share: float) -> None:
         ),
         ("t,left [N],right [N]\n0,1,2\n1,2,3\n", "which is meant"),
         ("time [ms],acceleration [g]\n0,1\n1,2\n", "cure: a column of the force, mass times acceleration"),
+        ("time [ms],a [m/s2]\n0,1\n1,2\n", "cure: a column of the force, mass times acceleration"),
+        ("-3.0,0.1\n-2.9,0.2\n", "cure: a first line that names the columns, as time_s,force_N"),
         ("Time (ms) Force (N)\n0 1\n1 2\n", "force_N: missing column|time_s: missing column"),
     ],
 )

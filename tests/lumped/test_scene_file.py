@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -137,6 +138,31 @@ def test_unknown_key_names_the_accepted_and_the_nearest() -> None:
     assert faults(table) == [
         "scene.toml: striker.radus: unknown key; accepted: mass, radius, shape, velocity; did you mean radius?"
     ]
+
+
+@pytest.mark.parametrize(
+    ("key", "home"),
+    [
+        ("target.material.inertia", "model"),
+        ("striker.gravity", "model"),
+        ("model.impacts", "motion"),
+        ("velocity", "striker"),
+        ("target.velocity", "striker"),
+    ],
+)
+def test_a_key_in_the_wrong_table_leads_to_the_right_one(key: str, home: str) -> None:
+    with pytest.raises(BadInput, match=f"^{re.escape(f'polymer-sphere.toml: {key}: unknown key; ')}.*") as refused:
+        Scene.load("polymer-sphere", {key: 1.0})
+    assert str(refused.value).endswith(f"; {key.rpartition('.')[2]} stands in [{home}]")
+
+
+def test_a_decimal_comma_and_a_unit_are_told_from_a_number(tmp_path: Path) -> None:
+    for value in ("0,006", "2 cm/s"):
+        with pytest.raises(BadInput, match=r"accepted: a number .* m/s; a number has a decimal point and no unit$"):
+            Scene.load("polymer-sphere", {"striker.velocity": value})
+    (tmp_path / "mine.toml").write_text("[striker]\nradius = 0,006\n", encoding="utf-8")
+    with pytest.raises(BadInput, match=r"'radius = 0,006'; cure: a decimal point$"):
+        Scene.load(tmp_path / "mine.toml")
 
 
 @pytest.mark.parametrize(
