@@ -261,8 +261,9 @@ def _join(path: str, name: str) -> str:
 
 
 def _refused(kind: Kind, value: object) -> str:
-    written_so = "; a number has a decimal point and no unit" if NUMERAL.match(str(value)) else ""
-    return f"{shown(value)} is not accepted; accepted: {kind.accepted}{written_so if isinstance(value, str) else ''}"
+    numeral = isinstance(value, str) and NUMERAL.match(value)
+    written_so = "; a number has a decimal point and no unit" if numeral else ""
+    return f"{shown(value)} is not accepted; accepted: {kind.accepted}{written_so}"
 
 
 def keys_of(make: Callable[..., object]) -> Mapping[str, Key]:
