@@ -82,7 +82,7 @@ def rank(
                 fitted.append(_ranked(curve, search(curve, law, scene, free, held, progress=progress)))
         except (BadInput, NotReached) as failure:
             failures.append(failure)
-            refused.append(RankedFit(law, reason=_why(failure)))
+            refused.append(RankedFit(law, reason=_why(law, failure)))
     if not fitted:
         raise failures[0]
     least = min(one.criterion or 0.0 for one in fitted)
@@ -90,10 +90,10 @@ def rank(
     return (*sorted(ranked, key=lambda one: one.criterion or 0.0), *refused)
 
 
-def _why(failure: BadInput | NotReached) -> str:
-    """Why a law has no fit, without the cure, for the others are already tried."""
+def _why(law: str, failure: BadInput | NotReached) -> str:
+    """Why a law has no fit, without its name and the cure, for the others are already tried."""
     said = failure.faults[0].message if isinstance(failure, BadInput) else str(failure)
-    return said.partition("; accepted")[0]
+    return said.partition("; accepted")[0].removeprefix(f"{law} is ")
 
 
 def _ranked(curve: Curve, fit: Fit) -> RankedFit:
