@@ -164,6 +164,17 @@ def test_the_force_is_the_slope_of_the_energy() -> None:
     assert middle.error < 1e-6
 
 
+@pytest.mark.parametrize(("farther", "settled"), [(1.05, 1e-2), (1.05, 1e-4), (1.1, 1e-3), (1.1, 1e-4)])
+def test_an_iteration_that_ends_early_knows_what_the_next_would_change(farther: float, settled: float) -> None:
+    """Of the force, from the residual alone."""
+    first = reached(solid(sphere(0.3), 0.1), 0.05)
+    body, depth = first.balance.encounter, farther * first.balance.depth
+    early = balanced(body, first.predicted(depth), depth, 500.0, settled=settled)
+    late = balanced(body, early.balance.displacement, depth, 500.0, settled=1e-16)
+    assert 1e-9 < early.error < 1e-5
+    assert abs(early.balance.force / late.balance.force - 1.0) == pytest.approx(early.error, rel=0.1)
+
+
 def test_a_contact_guessed_wider_than_the_striker_is_named() -> None:
     """A course that is planned deep guesses so, and then takes a shorter step."""
     encounter = solid(sphere(0.4), 0.1).encounter
