@@ -150,8 +150,8 @@ def _pressure(axes: Axes, comparison: Comparison) -> None:
     axes.axhline(0.0, color="#4d4d4d", linewidth=0.5)
     axes.plot(metre * radii, pascal * truth.at(radii), **REFERENCE)
     lowest, most = 0.0, pascal * truth.values.max()
-    for name, law in comparison.laws.items():
-        pressure = LawPressure.of(law)
+    pressures = {name: LawPressure.of(law) for name, law in comparison.laws.items()}
+    for name, pressure in pressures.items():
         if pressure is not None:
             values = pascal * pressure.at(truth.time, radii)
             axes.plot(metre * radii, values, **line_of(name))
@@ -161,7 +161,8 @@ def _pressure(axes: Axes, comparison: Comparison) -> None:
     if lowest < 0.0:
         axes.set_ylim(bottom=1.15 * lowest)
         axes.text(start, lowest, "tension  ", ha="right", style="italic", color=style.BLACK)
-    axes.set(xlabel=f"radius, {length_unit}", ylabel=f"pressure, {unit}", xlim=(0.0, metre * radii[-1]))
+    without = " (laws of a force alone tell none)" if None in pressures.values() else ""
+    axes.set(xlabel=f"radius, {length_unit}{without}", ylabel=f"pressure, {unit}", xlim=(0.0, metre * radii[-1]))
     style.label(axes, "d", f"pressure in the rebound, at {readable(truth.time, 's', 3)}")
 
 
