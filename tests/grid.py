@@ -1,13 +1,14 @@
 """Whether the plan keeps its word: error, bar and cost of random impacts against a grid of settings. A script, no test.
 
-    python tests/grid.py FOLDER [--kinds KIND ...] [--scenes N] [--seed N] [--seconds S]
+    python tests/grid.py FOLDER [--kinds KIND ...] [--scenes N] [--seed N] [--seconds S] [--dear S]
 
 Draws N scenes of every kind, each with a tolerance. The truth is the exact law of the scene's model where one answers,
 else finite elements at a quarter of the tolerance, known to their bar. The cost is processor time in one process, one
 thread, from nothing but loaded modules: every operator is built again, error bars included. What the default costs
 stands beside the cheapest of a grid about the settings with which it ended, orders {2, 3, 4} x half, once and twice the
 elements x half, once and twice the steps, all fixed, bars included: of all whose error is within the tolerance, and of
-those whose bar says so too. A setting that takes longer than the cheapest of the latter so far is given up.
+those whose bar says so too. A setting that takes longer than the cheapest of the latter so far is given up. Scenes whose
+default takes longer than ``--dear`` tell error and bar alone, and count in no share of the cost.
 
 A line a scene is kept in the folder, so that a run that was broken off goes on where it stood. Prints shares by kind,
 and draws the ratios.
@@ -225,7 +226,7 @@ def grid(scene: Scene, base: Numerics) -> Iterator[Given]:
     return map(fixed, dict.fromkeys(found))
 
 
-def measured(kind: str, number: int, seed: int) -> Line:
+def measured(kind: str, number: int, seed: int, dear: float) -> Line:
     """One scene: its line."""
     rng = np.random.default_rng([seed, list(KINDS).index(kind), number])
     scene = KINDS[kind](rng)
@@ -240,7 +241,7 @@ def measured(kind: str, number: int, seed: int) -> Line:
         return line | {"why": f"no truth: {failure}"}
     default = judge.tried(found.answer.settings, found)
     base = (WaveNumerics if scene.model.inertia else Numerics)(**found.answer.settings)
-    others = [asdict(one) for one in around(judge, default, base)]
+    others = [asdict(one) for one in around(judge, default, base)] if found.cpu <= dear else []
     return line | {"truth": judge.name, "known": judge.truth.bar, "default": asdict(default), "grid": others}
 
 
@@ -261,7 +262,10 @@ def around(judge: Judge, default: Tried, base: Numerics) -> list[Tried]:
 
 
 class Verdict(NamedTuple):
-    """A line judged: error and bar over the tolerance, cost over the cheapest that meets it by error, and by bar."""
+    """A line judged: error and bar over the tolerance, cost over the cheapest that meets it by error, and by bar.
+
+    Not a number where no grid was tried.
+    """
 
     kind: str
     error: float
@@ -277,7 +281,7 @@ def verdict(line: Line) -> Verdict | None:
     tolerance, default = line["tolerance"], Tried(**line["default"])
     tried = [default, *(Tried(**one) for one in line["grid"])]
     least = [
-        min((one.cpu for one in tried if serves(one, tolerance)), default=math.nan)
+        min((one.cpu for one in tried if line["grid"] and serves(one, tolerance)), default=math.nan)
         for serves in (Tried.meets, Tried.says)
     ]
     return Verdict(
@@ -308,13 +312,14 @@ def table(lines: list[Line]) -> str:
         alike = [line for line in lines if kind in (line["kind"], "all")]
         found = [one for one in map(verdict, alike) if one is not None]
         if found:
+            tried = [one for one in found if not math.isnan(one.by_error)]
             shares = (
-                f"{sum(which)} of {len(found)}"
+                f"{sum(which)} of {len(which)}"
                 for which in (
                     [one.error <= 1.0 for one in found],
                     [one.bar <= 1.0 for one in found],
-                    [one.by_error <= GOAL for one in found],
-                    [one.by_bar <= GOAL for one in found],
+                    [one.by_error <= GOAL for one in tried],
+                    [one.by_bar <= GOAL for one in tried],
                 )
             )
             median = np.nanmedian([one.by_bar for one in found])
@@ -351,6 +356,7 @@ def main() -> None:
     parser.add_argument("--scenes", type=int, default=SCENES, help="of every kind")
     parser.add_argument("--seed", type=int, default=SEED)
     parser.add_argument("--seconds", type=float, default=math.inf, help="by the clock, after which no scene is begun")
+    parser.add_argument("--dear", type=float, default=math.inf, help="of the default, beyond which no grid is tried")
     asked = parser.parse_args()
     os.environ["FE_CONTACT_CACHE"] = "off"
     asked.folder.mkdir(parents=True, exist_ok=True)
@@ -365,7 +371,7 @@ def main() -> None:
             if kind not in warm:  # what it imports is loaded
                 attempt(KINDS[kind](np.random.default_rng(0)), {"tolerance": TOLERANCES[False][1]})
                 warm.add(kind)
-            lines.append(measured(kind, number, asked.seed))
+            lines.append(measured(kind, number, asked.seed, asked.dear))
             with file.open("a", encoding="utf-8") as out:
                 out.write(json.dumps(lines[-1]) + "\n")
             sys.stdout.write(said(lines[-1]) + "\n")
