@@ -7,8 +7,8 @@ else finite elements at a quarter of the tolerance, known to their bar. The cost
 thread, from nothing but loaded modules: every operator is built again, error bars included. What the default costs
 stands beside the cheapest of a grid about the settings with which it ended, orders {2, 3, 4} x half, once and twice the
 elements x half, once and twice the steps, all fixed, bars included: of all whose error is within the tolerance, and of
-those whose bar says so too. A setting that takes longer than the cheapest of the latter so far is given up. Scenes whose
-default takes longer than ``--dear`` tell error and bar alone, and count in no share of the cost.
+those whose bar says so too. A setting that takes longer than the cheapest of the latter so far is given up. Scenes
+whose default takes longer than ``--dear`` tell error and bar alone, and count in no share of the cost.
 
 A line a scene is kept in the folder, so that a run that was broken off goes on where it stood. Prints shares by kind,
 and draws the ratios.
@@ -312,7 +312,7 @@ def table(lines: list[Line]) -> str:
         alike = [line for line in lines if kind in (line["kind"], "all")]
         found = [one for one in map(verdict, alike) if one is not None]
         if found:
-            tried = [one for one in found if not math.isnan(one.by_error)]
+            tried = [one for one in map(verdict, (line for line in alike if line.get("grid"))) if one is not None]
             shares = (
                 f"{sum(which)} of {len(which)}"
                 for which in (
