@@ -126,6 +126,7 @@ def curve_of(found: list[dict[str, str]], name: str) -> tuple[list[float], list[
     return [float(row["x"]) for row in mine], [float(row["y"]) for row in mine]
 
 
+@pytest.mark.tenth
 def test_a_changed_input_changes_what_depends_on_it(
     written: tuple[Path, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

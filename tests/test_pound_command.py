@@ -211,6 +211,7 @@ def test_the_chart_is_reproducible(tmp_path: Path) -> None:
     assert [path.read_bytes() for path in first] == [path.read_bytes() for path in again]
 
 
+@pytest.mark.tenth
 def test_a_motion_that_is_not_known_so_long_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
                                                     capsys: pytest.CaptureFixture[str]) -> None:  # fmt: skip
     monkeypatch.setattr(studies, "MOST_ERROR", 0.0)
@@ -347,6 +348,7 @@ def test_a_refused_command_writes_nothing(arguments: list[str], named: str, refu
     assert named in fault
 
 
+@pytest.mark.tenth
 def test_a_file_of_the_command_line_lies_where_the_user_stands(empty: Path) -> None:
     """And not beside the packaged case; of a key within a table too, and of the ground's record."""
     (empty / "floors.toml").write_text(FLOORS, encoding="utf-8")

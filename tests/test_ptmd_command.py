@@ -82,6 +82,7 @@ def test_the_default_folder_carries_the_name_and_what_was_changed(empty: Path) -
     assert [path.name for path in (empty / "fe-contact-out").iterdir()] == ["ptmd-mine-motion.end_time=1.0"]
 
 
+@pytest.mark.tenth
 def test_the_summary_tells_every_variant(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["ptmd", *SHORT, "--set", "motion.start=structure", "--out", str(tmp_path)]) == 0
     out = capsys.readouterr().out
@@ -110,6 +111,7 @@ def test_a_motion_that_cannot_be_followed_leaves_what_is_known(
     assert known["case"]["ring"]["gap"] == 0.02
 
 
+@pytest.mark.tenth
 def test_the_chart_is_reproducible(tmp_path: Path) -> None:
     found = study(read(CASE))
     first, again = (plot_study(found, tmp_path / name) for name in ("first", "again"))

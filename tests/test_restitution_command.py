@@ -58,6 +58,7 @@ def test_files_hold_every_impact(tmp_path: Path, lines: tuple[RestitutionLine, .
     assert len(content["lines"]) == len(lines)
 
 
+@pytest.mark.tenth
 def test_the_chart_is_the_same_every_time(tmp_path: Path, lines: tuple[RestitutionLine, ...]) -> None:
     first = [path.read_bytes() for path in plot_restitution(lines, tmp_path / "one")]
     assert first == [path.read_bytes() for path in plot_restitution(lines, tmp_path / "two")]

@@ -139,6 +139,7 @@ def test_two_over_omega_max_is_the_limit_of_a_linear_bar(mass: str) -> None:
             assert gained["failure"] == MotionUnbounded.__name__ or gained["gain"] > 1.0
 
 
+@pytest.mark.tenth
 def test_the_linear_limit_is_not_safe_for_contact_that_opens_and_closes() -> None:
     """Central difference with a penalty on a surface with mass gains energy at 0.9 of it, and hardly any at 0.3."""
     shares = {share: bars.limit_measure(_limit("lumped", 10.0, share))["gain"] for share in (0.3, 0.9)}

@@ -193,6 +193,7 @@ def test_the_default_keeps_its_promise(found: Tradeoff) -> None:
     assert default.cpu > 0.0
 
 
+@pytest.mark.tenth
 def test_every_point_builds_its_operators_again(scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What a user pays holds the factorizations, and no point lives on those of another."""
     built = []
@@ -267,6 +268,7 @@ def test_the_command_writes_table_and_chart(
     assert {"tradeoff.svg", "tradeoff.png"} <= {path.name for path in tmp_path.iterdir()}
 
 
+@pytest.mark.tenth
 def test_the_chart_is_reproducible(tmp_path: Path, found: Tradeoff) -> None:
     first, again = (plot_tradeoff(found, tmp_path / name) for name in ("first", "again"))
     assert [path.read_bytes() for path in first] == [path.read_bytes() for path in again]

@@ -80,6 +80,7 @@ def test_the_distance_is_exact_for_rows_that_jump() -> None:
     assert distance(rectangle(end), rectangle(late), knots) == pytest.approx(np.sqrt(share), rel=1e-12)
 
 
+@pytest.mark.tenth
 def test_a_bouncing_bar_claims_its_history_whole() -> None:
     """Between its contacts the steps err by a time, so that the force errs by the root of it: also where it ends."""
     scene = Scene.load("bar")

@@ -136,6 +136,7 @@ def test_the_bar_of_cylinders_covers(support: str) -> None:
     np.testing.assert_allclose(found.contact_radius, finest.contact_radius, rtol=2e-3)
 
 
+@pytest.mark.tenth
 def test_a_much_stiffer_striker_is_a_rigid_one() -> None:
     hard = Material(Relaxation(1e12), 0.3)
     for pair in (balls, lambda striker: balls(striker, support="held"), rollers):

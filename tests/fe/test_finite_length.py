@@ -152,6 +152,7 @@ def drawn(rng: np.random.Generator) -> tuple[Indenter, float]:
     return indenter, deepest * 10.0 ** rng.uniform(-1.5, 0.0)
 
 
+@pytest.mark.tenth
 def test_bars_hold_what_finer_meshes_find_and_the_ledger_is_right(
     campaign_size: Callable[..., int], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -110,6 +110,7 @@ def test_a_flight_takes_as_many_steps_as_the_logarithm_of_its_length(cases: list
         assert flights.steps < (PATIENCE + 2.0) * (doublings + 2.0)
 
 
+@pytest.mark.tenth
 def test_the_ball_falls_freely_and_the_ledger_closes(cases: list[Case]) -> None:
     for case in cases:
         touch = landed(case, STEP, PATIENCE)[0]

@@ -193,6 +193,7 @@ def test_a_fluid_that_is_watched_for_a_short_time_ends_there(scene_of: Scenes) -
     assert result.quantities["impulse"].value == pytest.approx(0.02 * (0.5 - result.history.velocity[-1]), rel=1e-6)
 
 
+@pytest.mark.tenth
 def test_a_fluid_creeps_and_is_never_said_to_separate(scene_of: Scenes) -> None:
     """An overdamped Maxwell fluid comes to rest at depth; a march that lets go of it invents a rebound.
 

@@ -207,6 +207,7 @@ def o_ring(kinematics: str) -> Indenter:
     return Indenter(Punch(2.0), material, ORing(1.0, 0.2), model=Model(kinematics=kinematics))
 
 
+@pytest.mark.tenth
 def test_an_o_ring_lightly_pressed_is_that_of_small_strains_and_stiffer_deep() -> None:
     """Force and half-width by the condensed section; deep, the force is the slope of the energy of both halves."""
     numerics, depth = settings(COARSE, Punch(2.0)), np.array([2e-4, 0.08])

@@ -129,6 +129,7 @@ def test_a_layer_s_dashpot_whose_force_jitters_from_node_to_node_asks_for_no_fin
     assert found.numerics["elements_per_contact"] <= 2.0 * plan(scene, {}).numerics.elements_per_contact
 
 
+@pytest.mark.tenth
 def test_bars_that_miss_by_the_ripple_of_an_edge_are_judged_again_where_it_meets_corners(
     uncovered: Callable[..., dict[str, float]],
 ) -> None:

@@ -83,6 +83,7 @@ def test_what_keeps_bars_from_the_tolerance_is_said_and_what_is_reached(
     assert not meets(found.quantities, 0.7 * float(met[1]))
 
 
+@pytest.mark.tenth
 def test_finer_rounds_stay_within_the_work_that_was_predicted(monkeypatch: pytest.MonkeyPatch) -> None:
     """The operations counted of a round are those predicted from the one before, within a factor of two."""
     scene, rounds, most = Scene.load("polymer-layer"), list[tuple[Numerics, float]](), 4e10

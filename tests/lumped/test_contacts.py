@@ -86,6 +86,7 @@ def test_every_memory_against_direct_integration(rule: str, impact: Build) -> No
         assert one["restitution"] == pytest.approx(-leaving / velocity, rel=1e-7)
 
 
+@pytest.mark.tenth
 def test_memories_differ_only_while_something_is_remembered(impact: Build) -> None:
     def second(rule: str, gravity: float) -> float:
         scene = bouncing(impact, 2, gravity)

@@ -372,6 +372,7 @@ def test_what_does_not_let_go_ends_where_it_should(law: str, impact: Build, unit
     assert stopped.quantities["peak_depth"].value == pytest.approx(still / 0.006 ** (1 / 3), rel=1e-6)
 
 
+@pytest.mark.tenth
 def test_ting_and_the_springs_stop_where_the_striker_comes_back(impact: Build) -> None:
     scene = impact(0.2, (0.8,), (0.1,), gravity=9.81)
     one, other = ended("ting", scene), ended("mdr", scene)

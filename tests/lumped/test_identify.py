@@ -435,6 +435,7 @@ def test_the_corner_of_a_low_pass_stands_in_for_the_silence() -> None:
     assert told.curves[0].deviation == pytest.approx(0.01 * force.max(), rel=0.15)
 
 
+@pytest.mark.tenth
 def test_a_low_pass_that_filtered_the_force_too_is_warned_of() -> None:
     """Of second order, its corner at ten times the contact's rate: the values are off, whatever the residuals say."""
     true = {"E1": 2.2e6, "E2": 1.3e6, "C1": 1.5e4}
@@ -536,6 +537,7 @@ def test_a_spring_that_the_curves_do_not_need_is_named() -> None:
     assert (found.beyond, found.unneeded) == ((), ("target.material.E1",))
 
 
+@pytest.mark.tenth
 def test_a_spring_that_may_be_none_opens_no_other_interval() -> None:
     """Below none there is none: what else is told of a fluid taken for a solid is told to both sides."""
     fluid = {"law": "maxwell", "E": 1e6, "eta": 1e3}

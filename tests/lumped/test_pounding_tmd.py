@@ -510,6 +510,7 @@ def test_an_end_within_a_contact_leaves_energy_locked_in_the_ring(paper: PtmdRes
     assert result.energy.stored_ring > 0.01 * result.energy.initial
 
 
+@pytest.mark.tenth
 def test_the_steps_do_not_decide_what_is_found() -> None:
     found, again = (simulate(with_ring(lining()), BOTH, 4.0, tolerance=one).measures for one in (1e-7, 1e-10))
     known = {name: value for name, value in found.to_dict().items() if value is not None}
@@ -540,6 +541,7 @@ def test_any_exponent_costs_about_what_hertz_does(monkeypatch: pytest.MonkeyPatc
 # memory between contacts
 
 
+@pytest.mark.tenth
 def test_memories_agree_where_contacts_are_many_relaxation_times_apart() -> None:
     recovering, *others = (simulate(with_ring(lining(memory=memory)), BOTH, 4.0) for memory in Memory)
     for result in others:
