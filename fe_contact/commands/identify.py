@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from fe_contact.commands import base
 from fe_contact.methods import FE, simulate
 from fe_contact.progress import Progress
-from lumped.errors import BadInput, Fault, NotReached
+from lumped.errors import BadInput, Fault, NotReached, addressed
 from lumped.schema.files import SCENES, parse_assignment, toml_text
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 # CURVE.csv:striker.velocity=0.3,striker.mass=0.1; a path may hold colons of its own
 OWN = re.compile(r"(?P<path>.*?):(?P<own>[A-Za-z_]\w*\.[^:=]+=.*)")
-WRITE = "--write"
+WRITE, LOW_PASS = "--write", "--low-pass"
 METHODS = ("ting", FE)
 LEAST_DRAWS, MOST_DRAWS = 100, 1_000_000  # the ends of a band need some; work
 
@@ -39,7 +39,9 @@ def execute(args: argparse.Namespace) -> int:
     name = Path(SCENES.resolved(args.scene)).stem
     where = base.folder(args, "identify", name)
     _check_written(args.write)
-    corner = None if args.corner is None else _frequency(args.corner)
+    corner, low_pass = _frequency(args.corner, "--corner"), _frequency(args.low_pass, LOW_PASS)
+    if corner and low_pass:
+        raise BadInput(Fault(LOW_PASS, "", "beside --corner; accepted: one of them"))
     sample = 0 if args.sample is None else _draws(args.sample)
     curves = {path: read_curve(Path(path)) for path in own}
     warnings = list[str]()
@@ -50,7 +52,8 @@ def execute(args: argparse.Namespace) -> int:
     progress(f"identifies {len(free)} keys from {len(curves)} curves")
     reference = _reference(args, progress)
     try:
-        found = identify(curves, args.scene, free, own, overrides, corner, args.each, sample, reference)
+        with addressed("", {"low_pass": LOW_PASS}):
+            found = identify(curves, args.scene, free, own, overrides, corner, args.each, sample, reference, low_pass)
     except NotReached:
         for warning in warnings:  # of curves that look odd: they may be why
             base.complain(warning)
@@ -89,10 +92,11 @@ def _curve_of(text: str) -> tuple[str, dict[str, object]]:
     return split["path"], dict(parse_assignment(part) for part in split["own"].split(",") if part.strip())
 
 
-def _frequency(text: str) -> float:
-    value = base.number(text, "--corner")
-    if not 0.0 < value < 1e12:  # safety: beyond any instrument's
-        raise BadInput(Fault("--corner", "", f"{value:g}: accepted a frequency above zero, Hz"))
+def _frequency(text: str | None, option: str) -> float | None:
+    """Hz, of an option. Raises BadInput."""
+    value = None if text is None else base.number(text, option)
+    if value is not None and not 0.0 < value < 1e12:  # safety: beyond any instrument's
+        raise BadInput(Fault(option, "", f"{value:g}: accepted a frequency above zero, Hz"))
     return value
 
 
@@ -184,6 +188,7 @@ MEMBER = base.Command(
         ),
         base.option("--each", action="store_true", help="every curve alone, too"),
         base.option("--corner", metavar="HZ", help="of the instrument's low pass, where no silence tells the noise's"),
+        base.option(LOW_PASS, metavar="HZ", help="the same of a low pass that the force has passed too"),
         base.option(WRITE, type=Path, metavar="FILE.toml", help="write the scene with the values found"),
         base.option("--sample", metavar="N", help="draws of the posterior, with bands of the force"),
         base.option("--method", default="ting", help="ting (default), or fe: corrected by finite elements"),

@@ -32,16 +32,18 @@ def identify(
     each: bool = False,
     sample: int = 0,
     reference: Reference | None = None,
+    low_pass: float | None = None,
 ) -> Identified:
     """The free keys of a scene, as `target.material.E0`, from one or several curves, by their names, together.
 
     Every curve's touch is sought too, whether `free` names `touch` or not. `scene`: a file, a packaged name, or the
     tables; `overrides`: keys set in it. `own`: by a curve's name the keys that its impact has of its own, as
     {"striker.velocity": 0.3}. `corner`: of the instrument's low pass of first order, Hz, where no silence tells the
-    noise's colour. `each`: every curve alone too. `sample`: how many draws of the posterior, see
-    :mod:`lumped.identify.ensemble`. `reference`: the history of a scene by another method, as finite elements,
-    which corrects the law near the most likely place, see :mod:`lumped.identify.correction`. Raises BadInput, and
-    NotReached where no impact of the scene comes near the curves.
+    noise's colour; `low_pass`: the same, where the force has passed it too, of rows in equal steps. `each`: every curve
+    alone too. `sample`: how many draws of the posterior, see :mod:`lumped.identify.ensemble`. `reference`: the history
+    of a scene by another method, as finite elements, which corrects the law near the most likely place, see
+    :mod:`lumped.identify.correction`. Raises BadInput, and NotReached where no impact of the scene comes near the
+    curves.
     """
     # what a search needs is imported with the first one: most work needs none
     from lumped.fit.space import TOUCH
@@ -52,11 +54,15 @@ def identify(
 
     if not curves:
         raise BadInput(Fault("curves", "", "none; accepted: at least one measured history"))
+    if low_pass is not None:
+        if corner is not None:
+            raise BadInput(Fault("low_pass", "", "beside a corner; accepted: one of them"))
+        corner = low_pass
     free = [name for name in free if name != TOUCH]
     file, theirs = SceneFile.of(scene, overrides or {}).named_by(free), own or {}
 
     def found(some: Mapping[str, Curve]) -> Identified:
-        histories, valleys = search(some, file, free, theirs, corner)
+        histories, valleys = search(some, file, free, theirs, corner, low_pass is not None)
         if reference is None:
             return answer(histories, valleys, tuple(some), sample)
         corrected = correct(histories, valleys, corner, reference)

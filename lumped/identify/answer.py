@@ -54,7 +54,7 @@ def answer(
         *_of_the_model(histories, sought, parameters, by_reference is None),
         *(_of_end(name, end, parameters[name]) for name, end in ends.items()),
         *_warnings(parameters, told),
-        *_of_a_low_pass(histories, sought, parameters),
+        *(() if histories.filtered else _of_a_low_pass(histories, sought, parameters)),
         *_of_the_sample(posterior, told),
         *_of_the_reference(by_reference, parameters),
     )
@@ -199,7 +199,7 @@ def _of_a_low_pass(histories: Histories, sought: Array, parameters: Mapping[str,
     ]
     if told:
         cause = "the noise is coloured as by a low pass; if that filtered the force too, the intervals of"
-        yield f"{cause} {', '.join(told)} do not hold their values; cure: a record of a faster instrument"
+        yield f"{cause} {', '.join(told)} do not hold their values; cure: --low-pass HZ, or a faster instrument"
 
 
 def _filtered_less(force: Array, noise: Noise) -> Array:

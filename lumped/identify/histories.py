@@ -21,7 +21,7 @@ from lumped.laws._hereditary import once
 from lumped.numbers import Array
 from lumped.result.gate import MeasuredPulse
 from lumped.result.history import LEAST_ROWS, History
-from lumped.result.noise import whitened
+from lumped.result.noise import coloured, whitened
 from lumped.result.score import Curve
 from lumped.scene.scene import Scene
 
@@ -130,13 +130,15 @@ class Noise:
 class Histories:
     """The curves, the scene's file and its free keys; what is known of the noise of each curve.
 
-    `corrections`: what a reference adds to the law's force of every curve; none: the law's alone.
+    `corrections`: what a reference adds to the law's force of every curve; none: the law's alone. `filtered`: whether
+    the low pass that coloured the noise has filtered the force too.
     """
 
     file: SceneFile
     keys: tuple[FreeKey, ...]
     samples: tuple[Samples, ...]
     noises: tuple[Noise, ...]
+    filtered: bool = False
     corrections: tuple[Correction, ...] = ()
     known: dict[bytes, tuple[Impact, ...] | None] = field(default_factory=dict)
 
@@ -181,8 +183,12 @@ class Histories:
         impacts = self.impacts(sought[: len(self.keys)])
         if impacts is None:
             return [FAR * one.force for one in self.samples]
-        every = zip(self.samples, impacts, self.touches(sought), strict=True)
-        return [one.force - impact.force(one.time - touch) for one, impact, touch in every]
+        every = zip(self.samples, impacts, self.touches(sought), self.noises, strict=True)
+        return [one.force - self.seen(impact.force(one.time - touch), noise) for one, impact, touch, noise in every]
+
+    def seen(self, force: Array, noise: Noise) -> Array:
+        """A force at the rows of a curve, (n,), N, as the instrument with this noise shows it."""
+        return coloured(force, noise.colour) if self.filtered else force
 
     def pressed(self, sought: Array) -> list[NDArray[np.bool_]]:
         """Which rows of every curve lie in the contact, or nearly, each (n,): in the others is silence."""
@@ -233,5 +239,6 @@ class Histories:
             if impacts is not None:
                 time, shift = one.time - self.touches(sought)[i], SHIFT * one.width
                 change = (impacts[i].force(time + shift) - impacts[i].force(time - shift)) / (2.0 * SHIFT)
+                change = self.seen(change, noise)
                 found[rows, len(self.keys) + i] = whitened(change, noise.colour) / noise.deviation
         return found

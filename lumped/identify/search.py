@@ -42,6 +42,7 @@ def search(
     free: Sequence[str],
     own: Mapping[str, Mapping[str, object]],
     corner: float | None,
+    low_pass: bool,
 ) -> tuple[Histories, tuple[Valley, ...]]:
     """The valleys of the likelihood, the likeliest first, see :func:`lumped.identify`. Raises BadInput, NotReached."""
     keys = free_keys(file, free)
@@ -52,7 +53,9 @@ def search(
         check_mass(scene)
         ting.of(scene)
         problem_of(scene)
-    begun = Histories(file, keys, samples, tuple(_first_noise(one, corner) for one in samples))
+    if low_pass and any(one.step is None for one in samples):
+        raise BadInput(Fault("low_pass", "", "not known of rows in uneven steps; accepted: equal steps"))
+    begun = Histories(file, keys, samples, tuple(_first_noise(one, corner) for one in samples), low_pass)
     if begun.freedom <= 0:
         reason = f"{begun.rows} rows for {begun.size} numbers; accepted: more rows than numbers sought"
         raise BadInput(Fault(next(iter(curves)), "", reason))

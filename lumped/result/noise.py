@@ -63,6 +63,15 @@ def whitened(series: Array, colour: Array) -> Array:
     return found
 
 
+def coloured(series: Array, colour: Array) -> Array:
+    """A series, (n,), through the low pass that gives white noise this colour, and leaves what is steady."""
+    if not colour.size:
+        return series
+    from scipy.signal import lfilter  # late: few records ask for it
+
+    return np.asarray(lfilter([1.0 - colour.sum()], np.append(1.0, -colour), series))
+
+
 @dataclass(frozen=True)
 class Whiteness:
     """Ljung and Box's test, doi 10.1093/biomet/65.2.297: Q, lags, and how probable as much is of noise, a ratio.

@@ -452,6 +452,38 @@ def test_a_low_pass_that_filtered_the_force_too_is_warned_of() -> None:
         assert all(found.parameters[name].holds(value) != warned for name, value in own.items())
 
 
+@pytest.mark.tenth
+def test_a_low_pass_that_is_known_leaves_the_values_as_they_were() -> None:
+    """Of first order, before the record's clock, as an instrument's: the intervals hold the truth only where it is."""
+    true = {"E1": 2.2e6, "E2": 1.3e6, "C1": 1.5e4}
+    own, fast = {f"target.material.{name}": value for name, value in true.items()}, {"striker.velocity": 0.5}
+    scene = Scene.load("polymer-sphere", own | fast)
+    history = simulate(laws.get("ting").of(scene), scene).history
+    often = 40  # steps of the instrument in one of the record
+    time = np.arange(-0.01, 0.04, 5e-5 / often)
+    shaken = history.force_at(time) + 0.02 * history.force.max() * np.random.default_rng(4).normal(size=time.size)
+    fades = np.exp(-2.0 * np.pi * 600.0 * 5e-5 / often)
+    record = Curve(time[::often], lfilter([1.0 - fades], [1.0, -fades], shaken)[::often])
+    aware, blind = (
+        identify({"drop": record}, "polymer-sphere", list(true), overrides=fast, low_pass=known)
+        for known in (600.0, None)
+    )
+    assert aware.adequate
+    assert all(aware.parameters[name].holds(value) for name, value in own.items())
+    assert not any("low pass" in one for one in aware.warnings)
+    assert not all(blind.parameters[name].holds(value) for name, value in own.items())
+    assert any("cure: --low-pass HZ" in one for one in blind.warnings)
+
+
+def test_a_low_pass_beside_a_corner_and_of_uneven_rows_is_refused() -> None:
+    curve = Curve(np.linspace(0.0, 1.0, 50), np.sin(np.pi * np.linspace(0.0, 1.0, 50)))
+    with pytest.raises(BadInput, match="beside a corner; accepted: one of them"):
+        identify({"curve": curve}, "polymer-sphere", ["E1"], corner=1e3, low_pass=1e3)
+    rows = np.linspace(0.0, 1.0, 50) ** 1.3
+    with pytest.raises(BadInput, match="not known of rows in uneven steps"):
+        identify({"curve": Curve(rows, np.sin(np.pi * rows))}, "polymer-sphere", ["E1"], low_pass=1e3)
+
+
 def test_a_corner_that_the_record_does_not_have_is_no_noise() -> None:
     """White noise whitened once more: neighbours are opposed, which is no law's error and no noise either."""
     rng = np.random.default_rng(SEED)
