@@ -90,8 +90,8 @@ class Packaged:
         """The file of a name; raises BadInput, with the nearest name, when there is none."""
         if name not in self.names:
             hint = nearest(name, self._near(Path(name)))
-            known = f"no such file, nor a packaged {self.kind}{hint}; packaged: {', '.join(self.names)}"
-            raise BadInput(Fault(name, "", known))
+            said = f"no such file, nor a packaged {self.kind}{hint}"
+            raise BadInput(Fault(name, "", said if hint else f"{said}; packaged: {', '.join(self.names)}"))
         return data_folder() / self.folder / f"{name}.toml"
 
     def resolved(self, source: str | Path) -> Path:
