@@ -139,10 +139,10 @@ def test_the_reference_measured_is_within_its_own_bar(polymer: tuple[Solved, Res
 @pytest.mark.parametrize("rows", [300, 3000])
 @pytest.mark.parametrize("noise", [0.02, 0.002, 0.005, 0.05])
 def test_noise_is_no_deviation(polymer: tuple[Solved, Result], noise: float, rows: int) -> None:
-    """The reference with noise, and silence around it: no verdict finds anything, of ten records none."""
+    """The reference with noise, and silence around it, short or long: of ten records no verdict finds anything."""
     history = polymer[1].history
-    time = np.linspace(-0.5, 1.6, rows) * float(history.time[-1])
     for seed in range(10):
+        time = np.linspace(-0.5, 1.6 + 3.0 * (seed % 3), rows) * float(history.time[-1])
         shaken = noise * history.force.max() * np.random.default_rng(seed).normal(size=rows)
         comparison = compare(*polymer, (), Measured(time, history.force_at(time) + shaken))
         said = re.fullmatch(
@@ -151,6 +151,45 @@ def test_noise_is_no_deviation(polymer: tuple[Solved, Result], noise: float, row
         )
         assert said is not None, (seed, verdicts(comparison)[0])
         assert float(said[1]) == pytest.approx(100.0 * noise, rel=0.3)
+
+
+@pytest.mark.parametrize("rows", [8, 15, 40])
+def test_few_rows_are_no_noise_and_hide_no_deviation(polymer: tuple[Solved, Result], rows: int) -> None:
+    history = polymer[1].history
+    time = np.linspace(0.0, 1.2, rows) * float(history.time[-1])
+    (alike, *_), (higher, *_) = (
+        verdicts(compare(*polymer, (), Measured(time, factor * history.force_at(time)))) for factor in (1.0, 1.08)
+    )
+    assert alike == "the reference agrees with the measured curve within its error bar"
+    found = re.search(r"the measured peak is (\S+) % higher", higher)
+    assert found is not None
+    assert float(found[1]) == pytest.approx(8.0, abs=0.4)
+
+
+def test_coloured_noise_and_a_record_that_ends_early_are_no_deviation(polymer: tuple[Solved, Result]) -> None:
+    history = polymer[1].history
+    time = np.linspace(-0.7, 1.9, 800) * float(history.time[-1])
+    slow = np.convolve(np.random.default_rng(1).normal(size=time.size), np.ones(8), mode="same")
+    shaken = history.force_at(time) + 0.02 * history.force.max() * slow / slow.std()
+    early = time < 0.6 * float(history.time[-1])
+    noise = 0.01 * history.force.max() * np.random.default_rng(2).normal(size=int(early.sum()))
+    for record in (
+        Measured(time, shaken),
+        Measured(time[early], history.force_at(time[early])),
+        Measured(time[early], history.force_at(time[early]) + noise),
+    ):
+        assert verdicts(compare(*polymer, (), record))[0].startswith("the reference agrees with the measured curve")
+
+
+def test_a_curve_on_another_scale_is_judged(polymer: tuple[Solved, Result]) -> None:
+    """Far higher than the reference, whose whole force lies below its tenth."""
+    history = polymer[1].history
+    time = np.linspace(-0.5, 1.6, 600) * float(history.time[-1])
+    noise = 0.12 * history.force.max() * np.random.default_rng(2).normal(size=time.size)
+    (said, *_) = verdicts(compare(*polymer, (), Measured(time, 12.0 * history.force_at(time) + noise)))
+    found = re.search(r"the measured peak is (\S+) % higher, beyond the noise", said)
+    assert found is not None
+    assert float(found[1]) == pytest.approx(1100.0, rel=0.02)
 
 
 @pytest.mark.parametrize(("stretch", "phrase"), [(1.15, "longer"), (0.85, "shorter")])

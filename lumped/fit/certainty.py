@@ -28,7 +28,7 @@ UNFELT, INSEPARABLE = 1e-9, 1e8
 RATIO = "R1"
 STRAIGHT = 0.01  # an interval no wider, relatively, to either side is that of the linearization
 CORRELATED = 0.99  # two parameters whose correlation lies beyond are named in a warning
-SYSTEMATIC = "neighbouring residuals are alike: the law itself errs, and the intervals do not hold that error"
+SYSTEMATIC = "neighbouring residuals are alike: the law itself errs, or the noise is coloured; no interval holds that"
 AT_BOUND = 1e-6  # rounding: of the value, or for the touch of the duration: as near to its bound it lies on it
 SAYS_NOTHING = 100.0  # times the peak: an interval of a force as wide tells no more than none
 

@@ -29,7 +29,7 @@ SPACES = " "  # one or more
 SEPARATORS = ("\t", ";", ",", SPACES)  # the first that tells a time from a force
 PREAMBLE = 40  # work: lines in which a header is looked for
 WORD = re.compile(r"[^\W_]+")
-ACCELERATION = re.compile(r"\b(acc|acceleration|beschleunigung)(?![^\W_])|\ba\W+(g|m/s)", re.IGNORECASE)
+ACCELERATION = re.compile(r"\b(acc|acceleration|beschleunigung)(?![^\W_])|\ba *[\[(/_] *(g|m/s)", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -165,7 +165,7 @@ def _text(content: bytes) -> str:
 
 def _header(source: str, lines: Sequence[str]) -> CurveHeader:
     """The first line that names a time and a force, the units perhaps in the next. Raises BadInput."""
-    nearest, lacking = "", [TIME, FORCE]
+    nearest, lacking, sentence = "", [TIME, FORCE], ""
     for number, line in enumerate(lines[:PREAMBLE]):
         if line.startswith("sep="):  # of Excel, for itself
             continue
@@ -179,12 +179,18 @@ def _header(source: str, lines: Sequence[str]) -> CurveHeader:
             except ValueError as several:
                 reason = f"{several}: which is meant? cure: call the one {TIME.plain} or {FORCE.plain}"
                 raise BadInput(Fault(source, "", reason)) from None
-            aligned = separator != SPACES or len(cells) == len(below)  # no sentence, no "F (N)"
-            if time and force and time.place != force.place and aligned:
+            if time and force and time.place != force.place:
+                first = _cells(lines[number + 1 + more], separator) if number + 1 + more < len(lines) else []
+                if separator == SPACES and not (len(first) == len(cells) and all(map(_is_number, first))):
+                    sentence = sentence or " ".join(with_units)  # or names of several words, as "F (N)"
+                    continue
                 return CurveHeader(time, force, len(cells), separator, number + 1 + more)
             missing = [one for one, there in ((TIME, time), (FORCE, force)) if not there]
             if 0 < len(missing) < len(lacking):
                 nearest, lacking = separator.join(with_units), missing
+    if sentence and sentence == " ".join(nearest.lstrip("# ").split()):
+        reason = f"the header {shown(sentence)} has not as many words as the row below has numbers"
+        raise BadInput(Fault(source, "", f"{reason}; cure: one word a column, as time_ms force_N, or commas between"))
     header = f"with a header of {shown(nearest)}" if nearest else "of a file without a line"
     said = f"missing column, {header}; accepted: time_s,force_N, or t [ms];F [kN] and the like"
     units = {one.plain: ", ".join(filter(str.isascii, one.units)) for one in lacking}
@@ -201,7 +207,9 @@ def _cells(line: str, separator: str) -> list[str]:
 
 
 def _rows(lines: Sequence[str], separator: str) -> Iterator[list[str]]:
-    return (line.split() for line in lines) if separator == SPACES else csv.reader(lines, delimiter=separator)
+    if separator == SPACES:
+        return (line.lstrip("# ").split() for line in lines)
+    return csv.reader(lines, delimiter=separator)
 
 
 def _with_units(cells: list[str], below: list[str]) -> tuple[list[str], int]:

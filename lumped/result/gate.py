@@ -165,11 +165,16 @@ class MeasuredPulse:
         return float(np.trapezoid(force, time)), self.noise * float(np.sqrt(np.sum(np.diff(time) ** 2)))
 
     def level_of(self, silence: Array) -> Silence:
-        """The mean of a silence, N, and how far from zero chance may move it; zero and inf where it is too short."""
+        """The mean of a silence, N, and how far from zero chance may move it; zero and inf where it is too short.
+
+        Noise is what is left of a line through it, so that a trend counts as none.
+        """
         if silence.size < LEAST_ROWS:
             return Silence(0.0, math.inf, 0)
-        rows = silence.size / memory(silence - silence.mean())
-        return Silence(float(silence.mean()), DEVIATIONS * float(silence.std()) / math.sqrt(rows), silence.size)
+        rows = np.linspace(-1.0, 1.0, silence.size)
+        noise = silence - silence.mean() - rows * float(rows @ silence) / float(rows @ rows)
+        alone = silence.size / memory(noise)
+        return Silence(float(silence.mean()), DEVIATIONS * float(noise.std()) / math.sqrt(alone), silence.size)
 
 
 class Silence(NamedTuple):
@@ -250,7 +255,7 @@ def _clipped(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
 
 
 def _other_contact(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
-    floor = max(ANOTHER * pulse.peak, DEVIATIONS * pulse.noise / math.sqrt(pulse.window))
+    floor = max(ANOTHER * pulse.peak, pulse.scatter)
     far = (pulse.time < pulse.start - TAIL * pulse.width) | (pulse.time > pulse.end + TAIL * pulse.width)
     again = far & (pulse.smooth > floor)
     if again.any() and pulse.ended and _single(scene):
@@ -260,25 +265,30 @@ def _other_contact(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
 
 
 def _zero(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
-    """A silence that is none: an offset where it stands alike before and after, else a drift; a small one is no bar."""
+    """A silence that is none: an offset where it stands alike before and after, else a drift; a small one is no bar.
+
+    One silence alone does not tell them apart.
+    """
     if not _single(scene):
         return
     before, after = pulse.level_of(pulse.before), pulse.level_of(pulse.after)
     if after.mean > 0.0 and (scene.gravity or not _lasts(pulse.after)):
         after = Silence(0.0, math.inf, 0)  # a weight at rest, or a slow end
-    known = [one for one in (before, after) if one.rows]
-    alike = abs(after.mean - before.mean) < max(0.5 * abs(before.mean), before.chance + after.chance)
-    judged = [known[0].with_another(known[1])] if alike and len(known) > 1 else known
+    silences = [(one, when) for one, when in ((before, "before touch"), (after, "after the contact")) if one.rows]
+    both = len(silences) > 1
+    alike = both and abs(after.mean - before.mean) < max(0.5 * abs(before.mean), before.chance + after.chance)
+    judged = [before.with_another(after)] if alike else [one for one, _ in silences]
     off = [abs(one.mean) for one in judged if one.off(OFF_A_LITTLE * pulse.peak)]
     if not off:
         return
-    silences = ((before, "before touch"), (after, "after the contact"))
-    said = " and ".join(f"{one.mean:.3g} N {when}" for one, when in silences if one.rows)
+    said = " and ".join(f"{one.mean:.3g} N {when}" for one, when in silences)
     told = f"the force is {said}, {100.0 * max(off) / pulse.peak:.2g} % of the peak"
     if alike:
         told = f"offset: {told}; cure: subtract it"
-    else:
+    elif both:
         told = f"drift: {told}; cure: subtract the line between; charge amplifiers: a longer time constant"
+    else:
+        told = f"offset or drift: {told}; cure: a record with silence on both sides tells which; then subtract it"
     yield Finding(told, max(off) > LEVEL_OFF * pulse.peak)
 
 

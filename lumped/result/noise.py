@@ -112,7 +112,8 @@ def whiteness(residuals: Sequence[Array]) -> Whiteness:
 
 def memory(series: Array) -> float:
     """How many rows tell as much as one alone: 1 + 2 sum rho_k, until the correlation has faded, at least one."""
-    covariance = autocovariance(series, series.size // 2)
+    n, spectrum = series.size, np.fft.rfft(series, 2 * series.size)
+    covariance = np.fft.irfft(np.abs(spectrum) ** 2)[: n // 2 + 1] / n
     if not covariance[0] > 0.0:
         return 1.0
     correlation = covariance[1:] / covariance[0]

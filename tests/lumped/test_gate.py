@@ -61,7 +61,7 @@ def twice(time: Array, force: Array) -> Made:
 
 
 def drift(time: Array, force: Array) -> Made:
-    return time, force + 0.15 * force.max() * (time - time[0]) / (time[-1] - time[0])
+    return time, force + 0.12 * force.max() * (time - time[0]) / (time[-1] - time[0])
 
 
 SPOILED: tuple[tuple[str, Spoil, float, str], ...] = (
@@ -107,6 +107,19 @@ def test_a_spoiled_curve_is_named(name: str, says: str, spoil: Spoil, lead: floa
     assert "cure: " in str(refused.value)
 
 
+@pytest.mark.parametrize("tail", [1.5, 10.0, 30.0])
+@pytest.mark.parametrize(("lead", "said"), [(0.0, "offset or drift"), (1.0, "drift")])
+def test_a_drift_is_seen_however_long_the_silence_is(tail: float, lead: float, said: str) -> None:
+    scene = Scene.load("polymer-layer")
+    history = simulate(laws.get("ting").of(scene), scene, 1e-4).history
+    last = float(history.time[-1])
+    time = np.linspace(-lead * last, (1.0 + tail) * last, round(120 * (1.0 + lead + tail)))
+    force = history.force_at(time) + 0.01 * history.force.max() * np.random.default_rng(1).normal(size=time.size)
+    with pytest.raises(BadInput, match=rf"curve: {said}: the force is .* after the contact"):
+        check_curve(Curve(*drift(time, force)), scene, "curve")
+    assert check_curve(Curve(time, force), scene, "curve") == ()
+
+
 @pytest.mark.parametrize("share", [0.01, 0.015])
 def test_a_small_offset_is_told_and_no_bar(share: float) -> None:
     """Beside the same curve without it, of which nothing is said."""
@@ -133,7 +146,12 @@ def test_a_small_offset_is_told_and_no_bar(share: float) -> None:
         ("time [ms],acceleration [g]\n0,1\n1,2\n", "cure: a column of the force, mass times acceleration"),
         ("time [ms],a [m/s2]\n0,1\n1,2\n", "cure: a column of the force, mass times acceleration"),
         ("-3.0,0.1\n-2.9,0.2\n", "cure: a first line that names the columns, as time_s,force_N"),
-        ("Time (ms) Force (N)\n0 1\n1 2\n", "force_N: missing column|time_s: missing column"),
+        (
+            "Time (ms) Force (N)\n0 1\n1 2\n",
+            r"'Time \(ms\) Force \(N\)' has not as many words .*; cure: ",
+        ),
+        ("time_s force_N\n0,1\n1,2\n", "'time_s force_N' has not as many words as the row below has numbers"),
+        ("Data of a good gauge\n1,2\n3,4\n", r"time_s: missing column, .* us, ns\n"),
     ],
 )
 def test_a_spoiled_file_is_named(text: str, message: str, tmp_path: Path) -> None:
@@ -180,6 +198,7 @@ def test_the_cure_of_a_wrong_header_is_the_right_one(
         ("t,F", ",", False, 1.0, 1.0, 2),
         ("time_s force_N", " ", False, 1.0, 1.0, 1),
         ("Impact of May 4\nt_ms F_kN", " ", True, 1e3, 1e-3, 4),
+        ("force over time\nmeasured on Monday\ntime_s,force_N", ",", False, 1.0, 1.0, 0),
     ],
 )
 def test_a_header_is_read_as_it_is_meant(
@@ -197,6 +216,13 @@ def test_a_header_is_read_as_it_is_meant(
     assert curve.time == pytest.approx(time, rel=1e-9, abs=1e-15)
     assert curve.force == pytest.approx(force, rel=1e-9)
     assert len(curve.remarks) == remarks
+
+
+def test_a_curve_is_read_as_numpy_writes_it(tmp_path: Path) -> None:
+    rows = np.array([[0.0, 0.0], [0.5, 2.0], [1.0, 0.0]])
+    np.savetxt(tmp_path / "curve.txt", rows, header="time_s force_N")
+    curve = read_curve(tmp_path / "curve.txt")
+    assert np.array_equal(np.column_stack([curve.time, curve.force]), rows)
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,9 @@ law and its scores in CSV, verdict and errors in JSON.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -34,7 +35,8 @@ from lumped.errors import BadInput, FeContactError
 from lumped.laws import get
 from lumped.load_curves.sampled import SampledCurve
 from lumped.progress import counting_steps
-from lumped.result.gate import MeasuredPulse
+from lumped.result.gate import DEVIATIONS, LEAST_ROWS, LEVEL, MeasuredPulse
+from lumped.result.noise import memory
 from lumped.result.result import RULED_RELATIVE, Result
 from lumped.result.score import Curve as Measured
 from lumped.result.score import score
@@ -54,6 +56,7 @@ WITHIN = "within the reference's error bar"
 DECISIVE = ("history", "held_until_max_depth", "peak_force", "peak_depth", "duration", "restitution")
 SCHEMA = "fe-contact/compare/1"
 MEASURED = "measured"  # what the curve's judgement is called
+ABOUT = 0.5  # of the contact, after it: what is compared
 SEEN = 1e-3  # look: of the peak, noise worth a word
 FAR_LATER = 9.0  # look: a duration too long by ten times and more is no matter of per cent
 SCORES = (
@@ -170,25 +173,44 @@ def _law(solved: Solved | None, told: Told, reference: Result, law: Result, curv
 
 
 def _curve(told: Told, reference: Result, measured: Measured) -> Judgement:
-    """Of a noisy curve the average over neighbours, which rounds the reference as much; bars hold the noise left."""
-    pulse, own = MeasuredPulse(measured.time, measured.force), reference.history.force_at(measured.time)
-    steady = replace(measured, force=pulse.smooth + own - pulse.averaged(own))
+    """From the touch on to a while after the reference's end, between its rows as the reference bends.
+
+    Of a noisy curve the average over neighbours, which rounds the reference too; how far noise may move it is in the
+    bars. A record that ends before its force does tells no duration, impulse or norm.
+    """
+    near = (measured.time >= 0.0) & (measured.time <= (1.0 + ABOUT) * told.duration)
+    near |= not (measured.force[near] > 0.0).any()  # nothing presses there: all of it is judged
+    time, force = measured.time[near], measured.force[near]
+    own = reference.history.force_at(time)
+    pulse, deviation, alike = MeasuredPulse(time, force), *_noise(measured, reference)
+    noisy = deviation > SEEN * pulse.peak
+    beyond = pulse.smooth - pulse.averaged(own) if noisy else force - own
+    every = np.union1d(told.time[(told.time > time[0]) & (told.time < time[-1])], time)
+    steady = Measured(every, reference.history.force_at(every) + np.interp(every, time, beyond))
     scored = score(reference.history, steady)
     errors: dict[str, float | None] = {name: getattr(scored, name) for name in (*QUANTITIES, *DISTANCES)}
     errors |= {"contact_radius_rebound": None, "pressure_rebound": None} | force_errors(told, steady)
-    noise = pulse.scatter / pulse.peak
-    bars = {name: _bar(reference, name) + noise for name in QUANTITIES} | force_bars(told, noise)
-    if (measured.force < 0.0).any():  # noise does not end where the contact does: durations above one level tell
-        above = _lasting(told, pulse.level)
-        errors |= {"shape": None, "duration": pulse.width / above - 1.0}
-        bars["duration"] += 2.0 * float(np.diff(measured.time).max()) / above
-    return Judgement(MEASURED, 100 * scored.normalized_error, errors, bars, noise=pulse.noise / pulse.peak)
+    left = DEVIATIONS * deviation * math.sqrt(alike / (pulse.window if pulse.noisy else 1)) / pulse.peak
+    bars = {name: _bar(reference, name) + left for name in QUANTITIES} | force_bars(told, left)
+    if noisy:  # what is noisy never comes to zero: how long either is above a tenth of its peak is compared
+        theirs = MeasuredPulse(time, own)
+        errors |= {"shape": None, "duration": pulse.width / theirs.width - 1.0}
+    if not pulse.ended or (noisy and pulse.level > LEVEL * pulse.peak):
+        errors |= dict.fromkeys(("duration", "impulse", "history", "shape"))
+    bars["duration"] += 2.0 * float(np.diff(time).max()) / told.duration
+    return Judgement(MEASURED, 100 * scored.normalized_error, errors, bars, noise=deviation / pulse.peak)
 
 
-def _lasting(told: Told, level: float) -> float:
-    """How long the reference's force is above a level, N, lower than its peak, s."""
-    pressed = np.flatnonzero(told.force(told.time) > level)
-    return float(told.time[pressed[-1]] - told.time[pressed[0]])
+def _noise(measured: Measured, reference: Result) -> tuple[float, float]:
+    """Its deviation, N, of what changes from row to row beside the reference, or of the silence where that is larger;
+    and how many neighbours tell as much as one.
+    """
+    whole = MeasuredPulse(measured.time, measured.force)
+    beside = MeasuredPulse(measured.time, measured.force - reference.history.force_at(measured.time)).noise
+    silence = np.concatenate([whole.before, whole.after])
+    if silence.size < LEAST_ROWS:
+        return beside, 1.0
+    return max(beside, float(silence.std())), memory(silence - silence.mean())
 
 
 def _error(reference: Result, law: Result, name: str) -> float | None:

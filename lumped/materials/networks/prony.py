@@ -11,6 +11,7 @@ from lumped.materials.networks.base import MODULUS_OR_ZERO, TIME, Network, Visco
 from lumped.materials.relaxation import Fidelity, Relaxation
 from lumped.schema.keys import Key, Number, Numbers
 
+NONE = 1e-100  # rounding: Pa, of a spring whose compliance would be no number: it counts as none
 DEVIATION = Number(0.0, 1e6)
 WINDOW = Numbers(TIME, most=2)
 
@@ -28,9 +29,11 @@ def of(
     """E(t) = E_inf + sum_k E_k exp(-t/tau_k) + eta dirac(t)."""
     if len(E) != len(tau):
         raise ValueError(f"E has {len(E)} values and tau has {len(tau)}; accepted: as many of one as of the other")
-    if E_inf + sum(E) + eta <= 0.0:
+    lasting, *branches = (modulus if modulus >= NONE else 0.0 for modulus in (E_inf, *E))
+    if lasting + sum(branches) + eta <= 0.0:
         raise ValueError("E_inf, every E and eta are zero; accepted: at least one above zero")
-    return Relaxation(E_inf, E, tau, eta, _fidelity(fit_window, fit_error, fit_error_before, fit_error_after))
+    fidelity = _fidelity(fit_window, fit_error, fit_error_before, fit_error_after)
+    return Relaxation(lasting, tuple(branches), tau, eta, fidelity)
 
 
 def _fidelity(window: tuple[float, ...], inside: float | None, before: float, after: float) -> Fidelity | None:
