@@ -46,7 +46,7 @@ class ContactNotSettled(NotReached):
 
 
 class ContactLost(NotReached):
-    """The step would end after separation: a quasi-static march retries with a shorter one."""
+    """The step would end after separation: a march of small strains retries with a shorter one."""
 
     def __init__(self, time: float) -> None:
         super().__init__(f"no contact after t = {time:.6g} s; cure: raise numerics.steps")

@@ -152,8 +152,9 @@ class Marcher:
         slowed = self.scale / (strike.mass * self.solid.unit)
         pull = strike.gravity / self.solid.unit
         depth = here.depth + length * (here.velocity + 0.5 * length * (pull - slowed * here.force))
-        if depth <= 0.0:  # a step over the whole rebound
-            raise ContactLost(here.time)
+        if depth <= 0.0:  # a step beyond the first touch, where nothing presses
+            parted = here.velocity + length * pull - 0.5 * length * slowed * here.force
+            return replace(here, time=here.time + length, depth=depth, velocity=parted, force=0.0)
         fading = Fading.over(self.law.network, length)
         found = self._equilibrium(here, depth, fading)
         balance, force = found.balance, found.rigid_force

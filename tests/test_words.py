@@ -65,7 +65,7 @@ def test_a_modulus_that_was_meant_in_gigapascal_is_doubted(
 @pytest.mark.parametrize(
     ("change", "doubt"),
     [
-        ("striker.radius=6", "the striker is lighter than air of its size; are its radius in m and its mass in kg?"),
+        ("striker.radius=6", "a whole ball of this radius would be lighter than air; are radius in m and mass in kg?"),
         ("target.material.E1=1.8", "the modulus relaxes to 1.8 Pa, less than any solid's; are the values in Pa"),
         ("target.material.E1=1.8e6", ""),
     ],

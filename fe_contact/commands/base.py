@@ -91,7 +91,7 @@ NO_CACHE = option("--no-cache", action="store_true", help="mesh and condense ane
 OUTPUT = (
     option("--out", type=Path, metavar="DIR", help="folder for the results, without those of a former run"),
     JSON,
-    option("--quiet", action="store_true", help="only the answer: no progress, no questions"),
+    option("--quiet", action="store_true", help="no progress, no questions"),
     option("--log", metavar="FILE", help="write progress into a file, line by line"),
     NO_CACHE,
 )
@@ -287,9 +287,8 @@ def finite_exponents(args: argparse.Namespace, study: str, rows: Callable[[], Se
 
 
 def publish(where: Path, write: Callable[[Path], object], record: str = RECORD) -> tuple[Table, str]:
-    """Results into their folder, all at once; the record's content, and a line that says where.
-
-    Raises CannotWrite.
+    """What `write` leaves in the folder it is given becomes the results, all at once, `record` being the JSON file that
+    names them; its content, and a line that says where. Raises CannotWrite.
     """
     older = (where / record).is_file()
     content = publish_files(where, write, record)
@@ -327,7 +326,7 @@ def report(
 
 
 def _doubts(body: Scene | Indenter) -> Iterator[str]:
-    """Of the unit of a modulus that no solid has, and of a size or mass that makes a ball lighter than air."""
+    """Of the units: a modulus that no solid has, a ball lighter than air."""
     if body.material is not None:
         young = body.material.young
         least, verb = (young.equilibrium, "relaxes to") if young.glassy >= SOFTEST else (young.glassy, "is at most")
@@ -336,7 +335,7 @@ def _doubts(body: Scene | Indenter) -> Iterator[str]:
             yield f"{told}; are the values in Pa (9 GPa = 9e9)?"
     volume = body.shape.whole_mass(1.0) if isinstance(body, Scene) and body.shape is not None else None
     if volume and isinstance(body, Scene) and 0.0 < body.mass < AIR * volume:
-        yield f"{body.name}: the striker is lighter than air of its size; are its radius in m and its mass in kg?"
+        yield f"{body.name}: a whole ball of this radius would be lighter than air; are radius in m and mass in kg?"
 
 
 def _left_out(result: Result | Indentation, asked: Model) -> str:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 # CURVE.csv:striker.velocity=0.3,striker.mass=0.1; a path may hold colons of its own
 OWN = re.compile(r"(?P<path>.*?):(?P<own>[A-Za-z_]\w*\.[^:=]+=.*)")
-WRITE, LOW_PASS = "--write", "--low-pass"
+WRITE, CORNER, LOW_PASS = "--write", "--corner", "--low-pass"
 METHODS = ("ting", FE)
 LEAST_DRAWS, MOST_DRAWS = 100, 1_000_000  # the ends of a band need some; work
 
@@ -39,9 +39,8 @@ def execute(args: argparse.Namespace) -> int:
     name = Path(SCENES.resolved(args.scene)).stem
     where = base.folder(args, "identify", name)
     _check_written(args.write)
-    corner, low_pass = _frequency(args.corner, "--corner"), _frequency(args.low_pass, LOW_PASS)
-    if corner and low_pass:
-        raise BadInput(Fault(LOW_PASS, "", "beside --corner; accepted: one of them"))
+    corner = None if args.corner is None else base.number(args.corner, CORNER)
+    low_pass = None if args.low_pass is None else base.number(args.low_pass, LOW_PASS)
     sample = 0 if args.sample is None else _draws(args.sample)
     curves = {path: read_curve(Path(path)) for path in own}
     warnings = list[str]()
@@ -52,7 +51,7 @@ def execute(args: argparse.Namespace) -> int:
     progress(f"identifies {len(free)} keys from {len(curves)} curves")
     reference = _reference(args, progress)
     try:
-        with addressed("", {"low_pass": LOW_PASS}):
+        with addressed("", {"corner": CORNER, "low_pass": LOW_PASS}):
             found = identify(curves, args.scene, free, own, overrides, corner, args.each, sample, reference, low_pass)
     except NotReached:
         for warning in warnings:  # of curves that look odd: they may be why
@@ -90,14 +89,6 @@ def _curve_of(text: str) -> tuple[str, dict[str, object]]:
     if split is None:
         return text, {}
     return split["path"], dict(parse_assignment(part) for part in split["own"].split(",") if part.strip())
-
-
-def _frequency(text: str | None, option: str) -> float | None:
-    """Hz, of an option. Raises BadInput."""
-    value = None if text is None else base.number(text, option)
-    if value is not None and not 0.0 < value < 1e12:  # safety: beyond any instrument's
-        raise BadInput(Fault(option, "", f"{value:g}: accepted a frequency above zero, Hz"))
-    return value
 
 
 def _draws(text: str) -> int:
@@ -158,7 +149,7 @@ def shown(one: Interval, unneeded: bool = False) -> str:
         return f"not told by the curves ({100.0 * one.level:g} %)"
     low, high = ("open" if end is None else f"{end:.5g}" for end in (one.low, one.high))
     if unneeded:
-        return f"none ({high if one.high is None else f'up to {high}'}, {100.0 * one.level:g} %) {one.unit}".rstrip()
+        return f"none (up to {high}, {100.0 * one.level:g} %) {one.unit}".rstrip()
     return f"{one.value:.6g} ({low} to {high}, {100.0 * one.level:g} %) {one.unit}".rstrip()
 
 
@@ -187,7 +178,7 @@ MEMBER = base.Command(
             "--free", required=True, metavar="KEY,...", help="keys to find, as target.material.E0, beside touch"
         ),
         base.option("--each", action="store_true", help="every curve alone, too"),
-        base.option("--corner", metavar="HZ", help="of the instrument's low pass, where no silence tells the noise's"),
+        base.option(CORNER, metavar="HZ", help="of the instrument's low pass, where no silence tells the noise's"),
         base.option(LOW_PASS, metavar="HZ", help="the same of a low pass that the force has passed too"),
         base.option(WRITE, type=Path, metavar="FILE.toml", help="write the scene with the values found"),
         base.option("--sample", metavar="N", help="draws of the posterior, with bands of the force"),

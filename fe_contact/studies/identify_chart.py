@@ -54,7 +54,8 @@ def _verdict(found: Identified) -> str:
 
 def _shown(one: Interval, unneeded: bool) -> str:
     if unneeded:
-        return "none" if one.high is None else f"none, {100.0 * one.level:g} % up to {readable(one.high, one.unit, 3)}"
+        high = "open" if one.high is None else readable(one.high, one.unit, 3)
+        return f"none, {100.0 * one.level:g} % up to {high}"
     low, high = ("open" if end is None else readable(end, one.unit, 3) for end in (one.low, one.high))
     return f"{readable(one.value, one.unit)}, {100.0 * one.level:g} % from {low} to {high}"
 

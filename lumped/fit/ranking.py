@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from lumped import laws
-from lumped.errors import BadInput, NotReached
+from lumped.errors import BadInput, Fault, NotReached
 from lumped.fit.measured import Measured
 from lumped.fit.record import LEVEL, Fit
 from lumped.fit.search import search
@@ -91,9 +91,10 @@ def rank(
 
 
 def _why(law: str, failure: BadInput | NotReached) -> str:
-    """Why a law has no fit, without its name and the cure, for the others are already tried."""
-    said = failure.faults[0].message if isinstance(failure, BadInput) else str(failure)
-    return said.partition("; accepted")[0].removeprefix(f"{law} is ")
+    """Why a law has no fit, in a line without its name and the cure, for the others are already tried."""
+    fault = failure.faults[0] if isinstance(failure, BadInput) else Fault("", "", str(failure).splitlines()[0])
+    said = fault.message.partition("; accepted")[0].partition("; cure")[0]
+    return said.removeprefix(f"{law} is ") if said.startswith(law) else f"{fault.key}: {said}".removeprefix(": ")
 
 
 def _ranked(curve: Curve, fit: Fit) -> RankedFit:

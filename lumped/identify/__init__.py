@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from lumped.identify.correction import Reference
     from lumped.result.score import Curve
 
+HIGHEST = 1e12  # safety: Hz, beyond any instrument's
+
 
 def identify(
     curves: Mapping[str, Curve],
@@ -54,18 +56,19 @@ def identify(
 
     if not curves:
         raise BadInput(Fault("curves", "", "none; accepted: at least one measured history"))
-    if low_pass is not None:
-        if corner is not None:
-            raise BadInput(Fault("low_pass", "", "beside a corner; accepted: one of them"))
-        corner = low_pass
+    for name, frequency in (("corner", corner), ("low_pass", low_pass)):
+        if frequency is not None and not 0.0 < frequency < HIGHEST:
+            raise BadInput(Fault(name, "", f"{frequency:g}: accepted a frequency above zero, Hz"))
+    if corner is not None and low_pass is not None:
+        raise BadInput(Fault("low_pass", "", "beside a corner; accepted: one of them"))
     free = [name for name in free if name != TOUCH]
     file, theirs = SceneFile.of(scene, overrides or {}).named_by(free), own or {}
 
     def found(some: Mapping[str, Curve]) -> Identified:
-        histories, valleys = search(some, file, free, theirs, corner, low_pass is not None)
+        histories, valleys = search(some, file, free, theirs, corner or low_pass, low_pass is not None)
         if reference is None:
             return answer(histories, valleys, tuple(some), sample)
-        corrected = correct(histories, valleys, corner, reference)
+        corrected = correct(histories, valleys, corner or low_pass, reference)
         return answer(corrected.histories, (corrected.valley,), tuple(some), sample, corrected.told)
 
     together = found(curves)

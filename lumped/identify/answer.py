@@ -159,9 +159,9 @@ def _of_residuals(tested: Whiteness, widened: float, curves: Sequence[FittedCurv
 def _of_the_model(
     histories: Histories, sought: Array, parameters: Mapping[str, Interval], by_law: bool
 ) -> Iterator[str]:
-    """Effects that the law, or the scene's own model, leaves out, and that change the force by more than noise does.
+    """Effects that the law (``by_law``), or the scene's own model, leaves out, larger than the narrowest half interval.
 
-    About as much as by the force a number errs by them, and no residual shows it.
+    A number errs by about as large a share as the force does, and no residual shows it.
     """
     noises = [noise.deviation / one.peak for noise, one in zip(histories.noises, histories.samples, strict=True)]
     least = min((one.share for one in parameters.values() if one.share is not None), default=max(noises))
@@ -169,16 +169,16 @@ def _of_the_model(
     for one in histories.samples:
         scene = histories.file.scene(histories.keys, sought[: len(histories.keys)], one.own)
         found = simulate(ting.of(scene), scene, LEDGER_TOLERANCE)
-        own = model_ledger(scene, Peak.of(found.quantities, found.history))
-        for entry in found.model_ledger if by_law else own:
+        ledger = found.model_ledger if by_law else model_ledger(scene, Peak.of(found.quantities, found.history))
+        for entry in ledger:
             before = largest.get(entry.effect, entry)
             largest[entry.effect] = max(before, entry, key=lambda one: one.size)
     left = sorted((entry for entry in largest.values() if entry.size > least), key=lambda entry: -entry.size)
     if left:
         said = ", ".join(f"{entry.effect} ({percent(entry.size)})" for entry in left)
         certain = sorted(left, key=lambda entry: not entry.exceeds(least))
-        keys = [entry.setting for entry in certain if entry.key.startswith("model.")]
-        cure = f"; cure: --method fe --set {keys[0]}" if keys else ""
+        keyed = [entry for entry in certain if entry.key.startswith("model.")]
+        cure = f"; cure for {keyed[0].effect}: --method fe --set {keyed[0].setting}" if keyed else ""
         yield f"left out, up to so much of the peak force: {said}; the intervals hold the noise alone{cure}"
 
 

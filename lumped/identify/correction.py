@@ -75,7 +75,7 @@ def _bars(histories: Histories, sought: Array) -> Array:
     every = zip(histories.samples, histories.noises, histories.corrections, histories.touches(sought), strict=True)
     for one, noise, by, touch in every:
         bar = np.interp(one.time - touch, by.time, by.bar, 0.0, 0.0)
-        bars.append(_largest(bar, noise.colour) / noise.deviation)
+        bars.append(_largest(histories.seen(bar, noise), noise.colour) / noise.deviation)
     return np.asarray(np.abs(np.linalg.pinv(histories.slopes(sought))) @ np.concatenate(bars))
 
 

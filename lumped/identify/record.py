@@ -217,6 +217,7 @@ class Identified:
             "converged": not self.beyond,
             "parameters": self._parameters,
             "correlation": {"names": list(self.parameters), "matrix": self.valleys[0].correlation.tolist()},
+            "unneeded": list(self.unneeded),
             "valleys": [asdict(one) | {"correlation": one.correlation.tolist()} for one in self.valleys],
             "model": {"adequate": self.adequate, "error": error, "widened": self.widened, **test},
             "onset_s": [curve.touch for curve in self.curves],

@@ -121,7 +121,7 @@ class Packaged:
 
 
 SCENES = Packaged("scenes", "scene")
-DECIMAL_COMMA = re.compile(r"=\s*[+-]?\d+,\d")
+DECIMAL_COMMA = re.compile(r"=\s*[+-]?\d+,\d+\s*(#.*)?$")
 
 
 def parsed(path: Path) -> Table:

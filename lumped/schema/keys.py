@@ -19,7 +19,7 @@ from lumped.errors import SHOWN_FAULTS, BadInput, Fault, nearest, shown
 from lumped.schema import Table
 
 UNKNOWN_KEY = "unknown key"
-NUMERAL = re.compile(r"[+-]?\d")  # how a text begins that may be meant as a number
+NUMERAL = re.compile(r"[+-]?\.?\d")  # how a text begins that may be meant as a number
 T = TypeVar("T")
 Made = TypeVar("Made", covariant=True)
 
@@ -261,7 +261,7 @@ def _join(path: str, name: str) -> str:
 
 
 def _refused(kind: Kind, value: object) -> str:
-    numeral = isinstance(value, str) and NUMERAL.match(value)
+    numeral = isinstance(kind, Number | Numbers) and isinstance(value, str) and NUMERAL.match(value)
     written_so = "; a number has a decimal point and no unit" if numeral else ""
     return f"{shown(value)} is not accepted; accepted: {kind.accepted}{written_so}"
 

@@ -477,6 +477,10 @@ def test_a_low_pass_that_is_known_leaves_the_values_as_they_were() -> None:
 
 def test_a_low_pass_beside_a_corner_and_of_uneven_rows_is_refused() -> None:
     curve = Curve(np.linspace(0.0, 1.0, 50), np.sin(np.pi * np.linspace(0.0, 1.0, 50)))
+    for wrong in (0.0, -100.0, np.nan, np.inf):
+        for name in ("corner", "low_pass"):
+            with pytest.raises(BadInput, match=f"{name}: .*accepted a frequency above zero, Hz"):
+                identify({"curve": curve}, "polymer-sphere", ["E1"], **{name: wrong})
     with pytest.raises(BadInput, match="beside a corner; accepted: one of them"):
         identify({"curve": curve}, "polymer-sphere", ["E1"], corner=1e3, low_pass=1e3)
     rows = np.linspace(0.0, 1.0, 50) ** 1.3
@@ -551,7 +555,8 @@ def test_an_effect_larger_than_the_intervals_is_named(velocity: float, named: bo
     assert half is not None
     assert (waves > half) == named
     said = [one for one in found.warnings if one.startswith("left out, up to so much of the peak force: ")]
-    assert any("target inertia" in one and "--method fe --set model.inertia=true" in one for one in said) == named
+    assert any("target inertia (" in one for one in said) == named
+    assert any(one.endswith("cure for target inertia: --method fe --set model.inertia=true") for one in said) == named
 
 
 def test_a_spring_that_the_curves_do_not_need_is_named() -> None:
@@ -567,6 +572,7 @@ def test_a_spring_that_the_curves_do_not_need_is_named() -> None:
     assert said.startswith("target.material.E1 ")
     assert said.endswith("none: the curves do not need it; cure: a law without it")
     assert (found.beyond, found.unneeded) == ((), ("target.material.E1",))
+    assert found.to_json()["unneeded"] == ["target.material.E1"]
 
 
 @pytest.mark.tenth

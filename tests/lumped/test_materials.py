@@ -200,3 +200,10 @@ def test_the_modulus_that_a_growing_load_feels_is_its_convolution(power: float) 
         np.testing.assert_allclose(found, expected, rtol=1e-9)
         late = Relaxation(0.0, (5.0,), (0.3,)).felt(1e5, p)
         assert float(late[0]) == pytest.approx(p * 5.0 * 0.3 / 1e5, rel=1e-5)
+
+
+def test_a_spring_that_rounding_does_not_tell_from_none_is_none() -> None:
+    """As a mutilated file may have it: its compliance would be no number."""
+    assert prony.of(5e-324, (1e6, 1e-310), (0.1, 2.0)) == prony.of(0.0, (1e6, 0.0), (0.1, 2.0))
+    with pytest.raises(ValueError, match="at least one above zero"):
+        prony.of(5e-324, (1e-310,), (0.1,))

@@ -105,7 +105,7 @@ def test_lines_are_comments_and_one_command() -> None:
 def iterations(scene: Scene, law: str, step: float, most: int = 40) -> int:
     """The most that Newton's method takes in a step of the trapezoidal rule until the mass flies back; `most`: none.
 
-    The tangent is that of OpenSees: the law's stiffness with the wrong sign, and none of its damping.
+    With the tangent that its sources have: the law's stiffness with the wrong sign, and none of its damping.
     """
     contact, mass = laws.get(law).of(scene), scene.reduced_mass
     depth, rate, push, worst = 0.0, scene.velocity, 0.0, 0

@@ -163,6 +163,10 @@ def test_a_decimal_comma_and_a_unit_are_told_from_a_number(tmp_path: Path) -> No
     (tmp_path / "mine.toml").write_text("[striker]\nradius = 0,006\n", encoding="utf-8")
     with pytest.raises(BadInput, match=r"'radius = 0,006'; cure: a decimal point$"):
         Scene.load(tmp_path / "mine.toml")
+    for key, value in (("model.kinematics", "2nd"), ("model.inertia", "1")):
+        with pytest.raises(BadInput) as refused:
+            Scene.load("polymer-sphere", {key: value})
+        assert "decimal point" not in str(refused.value)
 
 
 @pytest.mark.parametrize(
