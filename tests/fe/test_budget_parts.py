@@ -24,9 +24,11 @@ from fe_contact.budget.certify import (
     _judging,
     other_mesh,
 )
+from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import AIM, FACTOR, Growth, factors, missing
 from fe_contact.budget.runs import AnyRuns, Runs
 from fe_contact.budget.several import Row
+from fe_contact.budget.solved import SolvedBy
 from fe_contact.budget.variation import UNORDERED, factor
 from fe_contact.march.impacts import Followed
 from fe_contact.plastic import course
@@ -286,6 +288,26 @@ def test_a_round_is_refused_by_the_work_it_takes(numerics: WaveNumerics, monkeyp
         monkeypatch.setattr(reference, bound, 0.99 * taken)
         assert re.search(told, reference._too_dear(found, finer))
         monkeypatch.setattr(reference, bound, 1e99)
+
+
+def test_the_budget_of_a_result_is_that_of_its_peak_force_relative_to_it() -> None:
+    """Shares of a force of 4 N, by cause; and the errors themselves, quantity by quantity."""
+    share = dict(zip(CAUSES, (1e-2, 2e-3, 3e-4, 0.0), strict=True))
+    values = dict.fromkeys(UNITS, 7.0) | {"peak_force": 4.0}
+    found: Any = SimpleNamespace(
+        numerics=SimpleNamespace(tolerance=1.0, as_dict=dict),
+        quantities={name: Quantity(value, 1e-2, "") for name, value in values.items()},
+        error=lambda name, cause: values[name] * share[cause],
+        grounded=None,
+        parts=(),
+        history=list,
+        **dict.fromkeys(("separated", "energy", "energy_errors", "counted", "contacts")),
+    )
+    scene: Any = SimpleNamespace(motion=SimpleNamespace(impacts=1), model=None)
+    result = solved.record(scene, SolvedBy(Plan(found.numerics, frozenset(), ()), found, {}, ""))
+    assert result.error_budget == pytest.approx(share)
+    for name, value in values.items():
+        assert result.error_budget_by_quantity[name] == {cause: value * part for cause, part in share.items()}
 
 
 def test_what_one_contact_misses_is_said_without_its_number() -> None:
