@@ -366,6 +366,25 @@ def test_the_deepest_of_several_contacts_is_what_may_be_too_deep(
     assert sunk == [2.0]
 
 
+def test_the_deepest_and_the_widest_that_a_contact_became_are_what_may_be_too_much(
+    numerics: WaveNumerics, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of every contact in a row, without waves: a contact opens and closes, so its widest lies between."""
+    curves = [
+        SimpleNamespace(quantities={"peak_depth": depth}, radius_squared=np.array([0.0, width**2, 0.0]))
+        for depth, width in ((1.0, 3.0), (2.0, 4.0), (None, 5.0))
+    ]
+    row = [SimpleNamespace(curve=curve) for curve in curves]
+    monkeypatch.setattr(reference, "certify", lambda *of: SimpleNamespace(row=row))
+    monkeypatch.setattr(reference, "Strike", SimpleNamespace(of=lambda scene: None))
+    sunk = list[tuple[float, float]]()
+    made_up: Any = SimpleNamespace(
+        check_sunk=lambda *of: sunk.append(of), geometry=None, motion=SimpleNamespace(impacts=3)
+    )
+    reference.Statics(made_up, made_up, made_up).certified(numerics)
+    assert sunk == [(1.0, 3.0), (2.0, 4.0), (0.0, 5.0)]
+
+
 def test_a_run_that_fails_tells_nothing_of_any_contact_and_is_not_run_again(numerics: WaveNumerics) -> None:
     class Failing(AnyRuns[WaveNumerics]):
         tried = 0
