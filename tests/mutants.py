@@ -216,7 +216,6 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("lumped/solvers/hereditary/rebound.py", "ReboundPieces._solved", "if ascends -> True"): WORK,
     ("fe_contact/budget/plan.py", "SOONEST_PEAK", ""): BEGINS,
     ("fe_contact/budget/plan.py", "_stays", ""): BEGINS,
-    ("fe_contact/indentation.py", "_accompanied", "depth.max()"): BEGINS,
     ("fe_contact/steppers/steps.py", "coming_square", ""): GUESS,
     ("fe_contact/contact/problem.py", "_descended", "2 ->"): GUESS,
     ("fe_contact/contact/enforcement/exact.py", "enforce", "contact.MAX_ITERATIONS"): WORK,

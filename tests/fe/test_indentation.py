@@ -293,7 +293,9 @@ def test_few_depths_are_accompanied_by_others_down_to_where_an_edge_lies_elsewhe
     assert found.size == len(asked) + FEWEST
     assert found.max() == pytest.approx(2e-3)
     assert found[len(asked) :].min() == pytest.approx(found.min()), "as far down as those"
+    assert found[len(asked) :].max() == pytest.approx(found.max()), "and up"
     assert 0.5 < np.sqrt(found.min() / 2e-3) < 5.0 / 6.0
+    assert found.min() >= min(*asked, 0.5 * 2e-3), "no farther down than those asked for where they lie so far apart"
     many = np.linspace(1.0, 2.0, FEWEST)
     assert _accompanied(many, FEWEST) is many
 
