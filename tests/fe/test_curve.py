@@ -10,7 +10,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fe_contact.budget.curve import PEAK_SHARE, PLACES, Curve, LocalPolynomials, fitted_peak, peak, seen_from_both_sides
-from fe_contact.budget.variation import LATE, Variation, _crossings, calmest, calmest_at_corners
+from fe_contact.budget.variation import LATE, Variation, _at_corners, _crossings, calmest, calmest_at_corners
 from fe_contact.march.impact import STEPS_ALLOWED, share_of_rest, step_length, time_left
 from fe_contact.steppers.steps import Strike
 from lumped import Relaxation, Scene
@@ -90,6 +90,19 @@ def test_a_force_that_jitters_from_element_to_element_is_evened_or_read_at_corne
     curve, time = crossing(256, corners, 1e-4), np.linspace(0.1, 0.9, 50)
     true, calm = bump(256, 0.0).force(time), calmest_at_corners(curve, asked)
     assert np.abs(calm.force(time) - true).max() < 0.03 * np.abs(curve.force(time) - true).max()
+
+
+@pytest.mark.parametrize("first", [0, 10])
+def test_where_an_edge_meets_corners_a_curve_has_no_other_row(first: int) -> None:
+    """Half a crossing lies between, however dense the rows are: before the first corner and after the last."""
+    curve, crossed = bump(256, 0.0), np.linspace(0.0, 1.0, 51)[1 + first : 40]
+    places = _at_corners(curve, curve, crossed).x ** 2
+    assert np.all(np.diff(places) > 0.0)
+    at = np.searchsorted(places, [crossed[0] - 1e-9, crossed[-1] + 1e-9])
+    np.testing.assert_allclose(places[slice(*at)], crossed, rtol=1e-12)
+    before, after = places[at[0] - 1], places[at[1]]
+    assert 0.01 <= crossed[0] - before < 0.01 + 2.0 * np.sqrt(crossed[0]) / 256
+    assert 0.01 <= after - crossed[-1] < 0.01 + 2.0 / 256
 
 
 @pytest.mark.parametrize("steps", [64, 256])

@@ -651,6 +651,15 @@ def test_what_no_run_tells_makes_no_bar() -> None:
     assert found.energy_error("stored") == np.inf
 
 
+def test_a_quantity_that_has_no_value_has_no_bar() -> None:
+    """Of a contact cut off before it ends: neither when, nor how fast; all else has one."""
+    nothing: Any = None
+    held = replace(TRUTH, separated=False)
+    found = Budget(held, nothing, dict.fromkeys(CAUSES, ()), nothing, nothing).quantities
+    for name, quantity in found.items():
+        assert (quantity.value is None) == (name in ("duration", "restitution")) == (quantity.error is None), name
+
+
 @pytest.mark.parametrize("separated", [True, False])
 def test_what_has_parted_presses_no_more_what_is_cut_off_does(separated: bool) -> None:
     """A force that jumps to nothing at the end, or goes on."""
