@@ -463,6 +463,24 @@ def test_a_jitter_belongs_to_the_steps_where_it_falls_with_them(power: float, fa
     assert _time_steps(run, settings, False).jitter_falls == falls
 
 
+@pytest.mark.parametrize("flat", [False, True])
+def test_a_jitter_errs_by_what_every_other_row_less_changes(flat: bool, settings: Numerics) -> None:
+    """The same in every run, so that it is in no change of the steps; under a flat end as anywhere."""
+    strike = replace(STRIKE, relaxation=Relaxation(1.0, (1.0,), (1.0 / STEPS,)))
+
+    def run(numerics: Numerics) -> Curve:
+        smooth = made_up(numerics.steps, lambda share: (STEPS / numerics.steps) * 1e-9 * share)
+        by_turns = np.where(np.arange(numerics.steps + 1) % 2, 1e-5 * smooth.x, 0.0)
+        return replace(smooth, strike=strike, mean_force=smooth.mean_force + by_turns)
+
+    (jitter,) = _time_steps(run, settings, flat).jitter
+    time = np.linspace(0.0, 1.0, 40001)
+    force = jitter.first.force(time)
+    change = np.abs(force - made_up(STEPS, np.zeros_like).force(time))
+    norm = np.sqrt(np.trapezoid(change**2, time) / np.trapezoid(force**2, time))
+    assert jitter.errors["history_l2"] == pytest.approx(norm, rel=0.05)
+
+
 def test_a_body_softer_by_a_share_moves_the_speed_by_what_it_moves_the_impulse_and_the_force_by_the_share() -> None:
     errors = Softening(TRUTH, 1e-3).errors
     assert errors["restitution"] == pytest.approx(errors["impulse"] / (STRIKE.mass * STRIKE.velocity), rel=1e-3)
