@@ -19,6 +19,7 @@ from fe_contact.dynamics.march import Motion, march
 from fe_contact.methods import simulate
 from fe_contact.settings import RANGES, WaveNumerics
 from fe_contact.steppers.steps import Strike
+from fe_contact.waves.balls import Ball
 from fe_contact.waves.impact import choices_of, energies, motion, record
 from fe_contact.waves.moving import Moving
 from fe_contact.waves.targets import half_space, plane, sphere
@@ -86,6 +87,16 @@ def test_a_ball_that_touches_nothing_flies_without_strain() -> None:
     assert last.displacement[0] == pytest.approx(-last.time - 0.5 * 9.81e4 * last.time**2, rel=1e-9)
     assert last.energies.strain < 1e-10 * last.energies.work  # the rounding of every processor's sums: 1e-13 to 1e-12
     assert last.energies.deformable == pytest.approx(0.5 * MASS * (1.0 + 9.81e4 * last.time) ** 2, rel=1e-9)
+
+
+@pytest.mark.parametrize(("elements", "finer"), [(8.0, 1.0), (8.0, 1.5), (16.0, 1.0)])
+def test_a_ball_has_as_many_elements_along_its_contact_as_were_asked_for(elements: float, finer: float) -> None:
+    """Times as much as its surface is finer than its bulk: the largest of them is no longer than that allows."""
+    scene = ball(5.0)
+    _, numerics = begun(scene, elements_per_contact=elements)
+    end = math.asin(numerics.contact_radius / RADIUS)
+    corners = Ball.striking(scene).unit(numerics.varied(finer=finer)).surface.corners(numerics.order, end)
+    assert 0.75 < np.diff(corners[corners <= end]).max() / end * elements * finer <= 1.0
 
 
 def test_at_touch_all_energy_is_the_strikers() -> None:
