@@ -167,6 +167,16 @@ def test_what_a_coarse_march_lacks_is_known_to_first_order() -> None:
         assert ratios == pytest.approx([half_widths.SAFETY] * len(ratios), rel=0.1), name
 
 
+def test_a_force_that_ends_upright_is_known_to_its_end() -> None:
+    """Below exponent one its slope over the depth is infinite there: a depth beyond it by rounding has none."""
+    rng = np.random.default_rng(0)
+    for _ in range(30):
+        alpha = float(rng.uniform(0.5, 1.0))
+        scene = impact(rng, "hertz", alpha=alpha)
+        history = laws.hertz.of(scene).simulate(scene, 1e-3).history
+        assert history.force_error.max() <= 1e-3 * history.force.max(), alpha
+
+
 def test_slopes_at_the_nodes_of_a_step_are_those_of_polynomials() -> None:
     """The time of a peak errs by the slope of what the force lacks, over the curvature of the force."""
     x = half_widths.NODES.places
