@@ -202,6 +202,21 @@ def test_a_step_into_a_ring_ends_with_the_force_of_the_depth_it_ends_at() -> Non
     assert 2 < step.work.contact_problems < step.work.iterations, "more than one secant, each by two penalties"
 
 
+@pytest.mark.parametrize("viscosity", [0.0, 200.0])
+def test_the_force_at_the_touch_of_what_is_round_is_that_of_a_first_step_without_length(viscosity: float) -> None:
+    """None, of a dashpot neither: nothing is touched yet."""
+    scene = Scene.load("polymer-layer")
+    scene = replace(scene, material=Material(Relaxation(1e6, viscosity=viscosity), scene.material.nu))
+    numerics = plan(scene, {"steps": 48}).numerics
+    stepper = struck(scene.geometry, numerics).stepper(Strike.of(scene), numerics, ())
+    assert isinstance(stepper, FixedStepper)
+    usual = scene.mass * scene.velocity / numerics.contact_time
+    lengths = numerics.contact_time * np.geomspace(1e-4, 1e-8, 5)
+    forces = np.array([stepper.step(stepper.touch(), (), length).force for length in lengths]) / usual
+    assert 0.0 < forces[-1] < forces[0] < 0.1
+    assert stepper.first_force / usual == pytest.approx(forces[-1], abs=1e-3)
+
+
 def test_pressure_is_told_for_an_instant_within_its_step() -> None:
     scene = Scene.load("polymer-layer")
     numerics = plan(scene, {"steps": 48}).numerics
