@@ -285,6 +285,25 @@ def test_a_pressure_that_is_infinite_at_a_rim_wants_a_stiffer_penalty(shape: Sha
     assert settings({"penalty": 7.0}, shape).penalty == 7.0
 
 
+def test_a_penalty_softens_contacts_of_every_width_alike() -> None:
+    """By springs of p E*/a under Hertz's pressure, 3/(2 pi p) of the force to first order: what a flat end of radius a
+    would feel of them. On a layer so thick that it is a half-space, on one mesh for both depths.
+    """
+    case = Case(Sphere(1.0), Layer(1.0, "bonded"), 0.3, (1e-4, 4e-4))
+    radii, penalties = np.array([0.01, 0.02]), (100.0, 400.0)
+    soft, stiff = (
+        press(
+            case.indenter,
+            np.array(case.depths),
+            radii,
+            settings({"penalty": one, "enforcement": "penalty"}, case.shape),
+        )
+        for one in penalties
+    )
+    expected = 1.5 / np.pi * (1.0 / penalties[0] - 1.0 / penalties[1])
+    assert 1.0 - soft.force / stiff.force == pytest.approx([expected] * 2, rel=0.05)
+
+
 @pytest.mark.parametrize("asked", [[2e-3], [2e-3, 1.9e-3], [1e-3, 2e-3]])
 def test_few_depths_are_accompanied_by_others_down_to_where_an_edge_lies_elsewhere(asked: list[float]) -> None:
     """A contact radius, root of the depth, by a sixth to a half; those asked for come first; enough are alone."""
