@@ -22,7 +22,7 @@ def plan(scene: Scene, given: Given) -> Plan:
 
     Raises NotReached where even the row of springs does not come to an end.
     """
-    return plan_in_flight(scene, given, mdr.estimate(scene, SPRINGS), scene.geometry.shape.tip_radius or 0.0)
+    return plan_in_flight(scene, given, mdr.estimate(scene, SPRINGS), Ball.striking(scene).radius)
 
 
 def moving(scene: Scene, numerics: WaveNumerics) -> Flying:

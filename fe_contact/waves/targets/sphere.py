@@ -19,10 +19,10 @@ def plan(scene: Scene, given: Given) -> Plan:
 
     Raises NotReached where even that does not come to an end.
     """
-    target, own = scene.target, scene.geometry.shape.tip_radius
+    target, largest = scene.target, max(ball.radius for ball in _balls(scene))
     assert isinstance(target, SphereTarget)
     without = replace(scene, target=replace(target, support=None), model=replace(scene.model, inertia=False))
-    return plan_in_flight(scene, given, correspondence.estimate(without), max(target.radius, own or 0.0))
+    return plan_in_flight(scene, given, correspondence.estimate(without), largest)
 
 
 def moving(scene: Scene, numerics: WaveNumerics) -> Flying:
