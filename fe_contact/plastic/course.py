@@ -307,8 +307,8 @@ class PlasticLoading:
 
     def step(self, depth: float) -> None:
         """One step further, to a depth in units of the course."""
-        before = self.ends[-2] if len(self.ends) > 1 else self.presser.at_rest()
-        self.ends += self.presser.loaded(before, self.ends[-1], depth)
+        before, here = self.ends[-2:][0], self.ends[-1]
+        self.ends += self.presser.loaded(before, here, depth)
 
     @property
     def pressed(self) -> Forces:

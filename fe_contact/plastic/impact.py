@@ -216,8 +216,8 @@ def let_go(loading: PlasticLoading, deepest: float, power: float) -> list[Statio
     """Places of a release from the greatest depth of an impact, m, that one first."""
     presser, depth = loading.presser, deepest / loading.course.unit
     last = [place.depth < depth * (1.0 - 1e-6) for place in loading.ends].index(False) - 1
-    before = loading.ends[last - 1] if last else presser.at_rest()
-    taken = list(presser.loaded(before, loading.ends[last], depth))
+    before, here = loading.ends[max(last - 1, 0)], loading.ends[last]
+    taken = list(presser.loaded(before, here, depth))
     return presser.released(taken[-1], max(RELEASES, round(RELEASING * loading.numerics.steps)), power)
 
 

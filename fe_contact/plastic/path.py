@@ -106,12 +106,6 @@ class Presser:
     counted: Counted = uncounted
     counts: Counts = field(default_factory=Counts)
 
-    def at_rest(self) -> Station:
-        """Nothing touched yet."""
-        ground = self.ground
-        size = ground.encounter.body.core.size
-        return Station(0.0, np.zeros(size), ground.rest, 0.0, np.zeros(ground.encounter.skin.weights.shape), 0.0)
-
     def settled(self, state: State, depth: float, displacement: Array, pressure: Array, radius: float) -> Station:
         """Equilibrium at a depth after ``state``; displacement, pressure and radius are guesses.
 
@@ -160,7 +154,8 @@ class Presser:
     def loaded(self, before: Station, here: Station, depth: float, halvings: int = HALVINGS) -> Iterator[Station]:
         """End of the step from ``here`` to a depth, or ends of its halves where it does not settle.
 
-        ``before``: the end of the last step, along which this one is guessed. Raises PlasticFlowLost.
+        ``before``: the end of the step before, along which this one is guessed; ``here`` itself where there is none.
+        Raises PlasticFlowLost.
         """
         try:
             yield self._stepped(before, here, depth)
@@ -177,7 +172,7 @@ class Presser:
     def _stepped(self, before: Station, here: Station, depth: float) -> Station:
         """Two stages. Raises EquilibriumLost."""
         stage = here.depth + GAMMA * (depth - here.depth)
-        share = (stage - here.depth) / (here.depth - before.depth) if before.depth > 0.0 else 0.0
+        share = (stage - here.depth) / (here.depth - before.depth) if before is not here else 0.0
         middle = self._stage(here.state, before, here, stage, share)
         on = (1.0 - GAMMA) / GAMMA
         state = tuple(start + on * (flowed - start) for start, flowed in zip(here.state, middle.state, strict=True))
@@ -203,8 +198,9 @@ class Presser:
 
     def first(self, depth: float, radius: float) -> Station:
         """From rest to a first depth at once, with a contact radius to expect. Raises PlasticFlowLost."""
-        rest = self.at_rest()
-        return self._projected(rest.state, depth, rest.displacement, rest.pressure, min(radius, 1.0))
+        ground, encounter = self.ground, self.ground.encounter
+        displacement, pressure = np.zeros(encounter.body.core.size), np.zeros(encounter.skin.weights.shape)
+        return self._projected(ground.rest, depth, displacement, pressure, min(radius, 1.0))
 
     def _projected(self, state: State, depth: float, displacement: Array, pressure: Array, radius: float) -> Station:
         try:
