@@ -17,6 +17,7 @@ from fe_contact.assembly.operators import basis_on
 from fe_contact.indentation import expected, indent, settings
 from fe_contact.indentation import press as press_any
 from fe_contact.settings import Given
+from fe_contact.solids import pressing
 from fe_contact.solids.base import PointAnswer, State, elliptic
 from fe_contact.solids.block import press as press_block
 from fe_contact.solids.bulk import Bulk, Pattern
@@ -272,6 +273,23 @@ def test_a_nearly_incompressible_body_is_pressed_deep_in_few_iterations() -> Non
     assert found.iterations < 60
     assert found.error < 1e-6
     assert advanced(body.encounter, first, first.balance.depth, 500.0).iterations == 1, "where it is already"
+
+
+def test_iterations_from_rest_to_a_depth_are_those_of_all_its_equilibria(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three penalties at first, then so many steps to where it goes; counted from outside."""
+    body, counted = solid(sphere(0.3), 0.2), list[int]()
+
+    def counting(*given: Any, **named: Any) -> Equilibrium:
+        found = balanced(*given, **named)
+        counted.append(found.iterations)
+        return found
+
+    monkeypatch.setattr(pressing, "balanced", counting)
+    first = advanced(body.encounter, None, 0.02 / body.unit, 500.0)
+    assert len(counted) == len(pressing.RAMP)
+    assert first.iterations == sum(counted) > len(counted)
+    counted.clear()
+    assert advanced(body.encounter, first, 0.2 / body.unit, 500.0).iterations == sum(counted) > len(counted) > 1
 
 
 def descended(energy: Callable[[float], float], slope: float, way: float = 0.3) -> float:
