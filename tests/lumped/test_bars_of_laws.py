@@ -24,6 +24,10 @@ from lumped.result.history import End
 from lumped.result.result import UNITS, meets
 from lumped.scene.tables import LawChoice
 from lumped.solvers.point import half_widths
+from lumped.solvers.point.bodies import Bodies, Stage, State, Step
+from lumped.solvers.point.contact import DEPTH_LEFT
+from lumped.solvers.point.phase import NODES, PointMarch
+from lumped.solvers.radau import STAGES
 
 CASES = 600
 # Where an error is rounding its size is an accident; the time of a flat peak is known to the root of rounding.
@@ -199,6 +203,27 @@ def test_a_force_that_lacks_a_share_of_itself_is_that_share_away_from_the_true_o
     for part in parts:
         part.force[:] = 0.0
     assert half_widths._l2(parts) == 0.0
+
+
+@pytest.mark.parametrize("alpha", [0.5, 1.25, 1.5, 2.5])
+def test_a_step_that_hardly_reaches_the_surface_ends_there_though_it_has_to_be_longer(alpha: float) -> None:
+    """One step from the turn of a power law: graded towards its end it says of the same motion a little else."""
+    law = laws.hertz.of(Scene(None, 1.0, 1.0, law=LawChoice("hertz", {"k": 1.0, "alpha": alpha})))
+    turned, stage = State(1.0, 0.0, 0.0), Stage(False, 1.0, 1.0, 1.0)
+    march = PointMarch(law, stage, Bodies(1.0, 1.0, 0.0), {"exit": DEPTH_LEFT}, math.inf, math.inf)
+
+    def stepped(length: float) -> Step:
+        found = march._solved(turned, length, np.zeros(STAGES), NODES)
+        assert found is not None
+        return found
+
+    step = stepped(brentq(lambda length: stepped(length).end.depth, 1.0, 3.0) * (1.0 + 1e-12))
+    found, event = march._until_event(step, 0.0)
+    assert event == "exit"
+    assert found is not None
+    assert abs(found.end.depth) < 1e-14
+    quarter = beta(1.0 / (alpha + 1.0), 0.5) / math.sqrt(2.0 * (alpha + 1.0))
+    assert found.length == pytest.approx(quarter, rel=1e-4)
 
 
 def test_an_end_is_known_to_1e_10_whatever_is_asked(campaign_size: Callable[[int], int]) -> None:
