@@ -70,7 +70,7 @@ class PieceAsked(NamedTuple):
     @property
     def kind(self) -> tuple[object, ...]:
         """What pieces share that are solved together."""
-        problem, known = self.problem, self.before.coefficients.shape[2] if self.before else 0
+        problem, known = self.problem, self.before and self.before.coefficients.shape[2]
         driven = problem.modulus.viscosity > 0.0, problem.gravity != 0.0
         return self.clock, self.table.points.size, known, problem.terms, *driven
 
