@@ -319,6 +319,14 @@ def test_few_depths_are_accompanied_by_others_down_to_where_an_edge_lies_elsewhe
     assert _accompanied(many, FEWEST) is many
 
 
+@pytest.mark.parametrize(("bar", "said"), [(1e-3, ""), (4e-3, "tolerance 0.001 not reached: force to 0.004")])
+def test_what_a_force_misses_is_said_by_its_worst_depth_and_nothing_where_it_misses_none(bar: float, said: str) -> None:
+    depth, force = np.array([1e-4, 2e-4]), np.array([3.0, 8.0])
+    found = Indentation(SPREAD.indenter, "fe", 1e6, 1e-3, depth, force, np.sqrt(depth), force * np.array([1e-4, bar]))
+    assert found.converged == (not said)
+    assert found.message == said
+
+
 def test_forces_are_pressed_finer_until_all_bars_together_meet_the_tolerance() -> None:
     """Each alone would."""
     way, numerics = indenting([1.0, 2.0], False), settings({"tolerance": 1e-2}, Sphere(1.0))
