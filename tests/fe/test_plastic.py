@@ -20,7 +20,7 @@ from fe_contact.assembly.forms import Array
 from fe_contact.errors import BodyTooFine, MemoryTooSmall
 from fe_contact.indentation import indent
 from fe_contact.plastic import ground
-from fe_contact.plastic.course import Course, PlasticLoading, Varied, settings
+from fe_contact.plastic.course import Course, PlasticLoading, Varied, _depth_of, settings
 from fe_contact.plastic.fields import STRESS, PressedAgain
 from fe_contact.plastic.impact import SPRUNG, Answered, Rebound, Runner, _at_most, _release, pilot, plan
 from fe_contact.plastic.indent import _onwards
@@ -38,6 +38,8 @@ from lumped.result.model_ledger import FLOW
 from lumped.scene.indenter import Indenter
 from lumped.scene.tables import SceneReader
 from lumped.schema import Table
+from lumped.shapes import Sphere
+from lumped.shapes.cone import Cone
 
 YOUNG, STRENGTH, RADIUS, MASS = 2e11, 4e8, 0.005, 4e-3
 COARSE = {"elements_per_contact": 7.0, "steps": 12, "tolerance": 0.05}
@@ -327,6 +329,22 @@ def test_a_body_that_is_cut_ends_half_as_far_away(rim: bool) -> None:
     area = 0.5 * np.abs((br - ar) * (cz - az) - (cr - ar) * (bz - az)).sum()
     assert area == pytest.approx(0.25 * np.pi * (0.5 * far) ** 2, rel=0.2)
     assert 0.45 * far < np.hypot(*mesh.p).max() < 0.75 * far
+
+
+@pytest.mark.parametrize(
+    ("share", "found"), [(1e-10, 0.0), (1e-8, 1e-8), (1e-3, 1e-3), (0.7, 0.7), (9.0, 9.0), (17.0, 16.0)]
+)
+def test_a_depth_at_which_the_pressure_is_so_high_is_found_between_the_touch_and_far_beyond_the_deepest(
+    share: float, found: float
+) -> None:
+    """Under a sphere 4 a/(3 pi R) of E*, a^2 = R depth; a cone presses as hard at any depth."""
+    radius, deepest = 0.02, 3e-9
+    pressure = 4.0 / (3.0 * math.pi) * math.sqrt(share * deepest / radius)
+    assert _depth_of(Sphere(radius), pressure, deepest) / deepest == pytest.approx(found, rel=1e-6)
+    cone = Cone(10.0)
+    mean = 0.5 * math.tan(math.radians(10.0))
+    assert _depth_of(cone, 0.99 * mean, deepest) == 0.0
+    assert _depth_of(cone, 1.01 * mean, deepest) == 16.0 * deepest
 
 
 def test_a_first_step_that_reaches_no_point_of_the_mesh_is_no_force() -> None:
