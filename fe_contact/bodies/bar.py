@@ -52,12 +52,12 @@ class LineElements:
     stiffness: Matrix
 
 
-def pitch(length: float, elements: int, tip: float = 1.0) -> float:
+def pitch(length: float, elements: int, tip: float) -> float:
     """Length of all elements but the first, which is ``tip`` of it, m."""
     return length / (elements - 1 + tip)
 
 
-def line_elements(bar: Bar, elements: int, tip: float = 1.0) -> LineElements:
+def line_elements(bar: Bar, elements: int, tip: float) -> LineElements:
     """A bar cut into elements."""
     lengths = np.full(elements, pitch(bar.length, elements, tip))
     lengths[0] *= tip
