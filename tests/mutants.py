@@ -170,7 +170,6 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/march/impact.py", "REST_ROWS", ""): WORK,
     ("fe_contact/waves/line.py", "Doubling.finer", ""): WORK,
     ("fe_contact/steppers/struck.py", "SECANTS, PRECISE", "20 ->"): WORK,
-    ("fe_contact/budget/runs.py", "operations", ""): WORK,
     ("fe_contact/contact/problem.py", "ROOM", ""): WORK,
     ("fe_contact/steppers/struck.py", "FixedContact._by_secants", "solves +"): WORK,
     ("fe_contact/steppers/struck.py", "FixedContact._at_once", "1 ->"): WORK,

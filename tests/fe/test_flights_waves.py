@@ -15,8 +15,9 @@ from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.dynamics.body import BodyWithMass, Part, Pressing, state_of, undeformed
 from fe_contact.dynamics.march import Energies, Moment, Motion, Sample, Steppers, account_at_start
 from fe_contact.dynamics.stepping import Enforced
+from fe_contact.march.impacts import Grounded
 from fe_contact.waves import impact
-from fe_contact.waves.impact import Flights
+from fe_contact.waves.impact import Flights, WaveBouncer
 from lumped.materials import Relaxation
 
 penalty = ENFORCEMENTS.get("penalty")
@@ -125,6 +126,22 @@ def test_the_ball_falls_freely_and_the_ledger_closes(cases: list[Case]) -> None:
 def test_a_touch_after_the_end_is_none(cases: list[Case]) -> None:
     flights = Flights(Steppers(cases[0].body, Enforced(penalty, 1.0)), STEP, PATIENCE)
     assert flights.landing(cases[0].parted, 0.5 * cases[0].touch()) is None
+
+
+@pytest.mark.parametrize(("ends", "why"), [(0.5, Grounded.LATE), (1e-9, Grounded.LATE), (math.inf, Grounded.MANY)])
+def test_where_no_touch_follows_it_is_said_why(cases: list[Case], ends: float, why: Grounded) -> None:
+    """Time ends before it, by a share of the flight or at once; or so many steps are not to be afforded."""
+    case, nothing = cases[0], cast(Any, None)
+    flights = Flights(Steppers(case.body, Enforced(penalty, 1.0)), STEP, PATIENCE)
+    scene = SimpleNamespace(gravity=case.gravity, end_time=ends * case.touch())
+    if math.isinf(ends):
+        flights._most = 3.0
+    bouncer: Any = SimpleNamespace(
+        _scene=scene, _moving=SimpleNamespace(body=case.body), flights=flights, _steps=0, _moment=case.parted
+    )
+    assert WaveBouncer.touch(bouncer, nothing, nothing) is why
+    scene.gravity = 0.0
+    assert WaveBouncer.touch(bouncer, nothing, nothing) is Grounded.NO_GRAVITY
 
 
 class Clocked(Flights):

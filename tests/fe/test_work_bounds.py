@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from itertools import pairwise
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -12,6 +14,7 @@ import pytest
 
 from fe_contact import cli, reference
 from fe_contact.assembly import operators
+from fe_contact.budget.budget import TotalWork
 from fe_contact.budget.certify import certify
 from fe_contact.budget.runs import operations
 from fe_contact.dynamics import march
@@ -20,6 +23,8 @@ from fe_contact.march import impact
 from fe_contact.march.impacts import Grounded
 from fe_contact.methods import simulate
 from fe_contact.settings import Numerics
+from fe_contact.steppers.flat_end import FlatEnd
+from fe_contact.steppers.struck import Deformable
 from fe_contact.targets.base import struck
 from fe_contact.waves import line, plan
 from fe_contact.waves.certify import WaveRuns
@@ -81,6 +86,28 @@ def test_what_keeps_bars_from_the_tolerance_is_said_and_what_is_reached(
     assert met is not None
     assert meets(found.quantities, 1.01 * float(met[1]))
     assert not meets(found.quantities, 0.7 * float(met[1]))
+
+
+def test_operations_are_those_of_nested_dissection_outside_and_of_elimination_in_the_zone() -> None:
+    """Eight times as many for four times the unknowns; multiplications of a symmetric matrix, row by row; no zone under
+    a flat end.
+    """
+
+    class Zone(Deformable):
+        operator: Any = SimpleNamespace(trace=np.zeros((1, 80)))
+
+    flat, nothing = FlatEnd(1.0, 1.0, 1, 2.0), TotalWork(1024, 0, 0, 1, 1, 1, 0)
+    assert operations(nothing, Zone()) == operations(nothing, flat) == 0.0
+    factorized, solved = replace(nothing, factorizations=3), replace(nothing, solves=5)
+    assert operations(factorized, flat) == 3.0 * 32.0**3
+    assert operations(replace(factorized, degrees_of_freedom=4096), flat) == 8.0 * operations(factorized, flat)
+    assert operations(solved, flat) == 5.0 * 1024.0 * 10.0
+    newton = replace(nothing, iterations=7)
+    eliminated = 7.0 * sum(left**2 for left in range(80))
+    assert operations(newton, Zone()) == pytest.approx(eliminated, rel=0.03)
+    assert operations(newton, flat) == 0.0
+    whole = replace(nothing, factorizations=3, solves=5, iterations=7)
+    assert operations(whole, Zone()) == sum(operations(one, Zone()) for one in (factorized, solved, newton))
 
 
 @pytest.mark.tenth
