@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from fe_contact.assembly.forms import Array
 from fe_contact.solids.base import PointAnswer, State
-from lumped.materials.energies.base import StrainEnergy, strained
+from lumped.materials.energies.base import StrainEnergy, Strained, strained
 
 
 @dataclass(frozen=True)
@@ -19,5 +19,9 @@ class Hyperelastic:
 
     def respond(self, gradient: Array, state: State) -> PointAnswer:
         """See :class:`fe_contact.solids.base.Response`."""
-        found = strained(self.energy, gradient, self.shear, self.lame)
+        found = self.strained(gradient)
         return PointAnswer(found.stress, found.tangent, found.energy, (), found.pulls, found.drifts)
+
+    def strained(self, gradient: Array) -> Strained:
+        """What a displacement gradient (5, ...) makes of it."""
+        return strained(self.energy, gradient, self.shear, self.lame)

@@ -70,7 +70,7 @@ class Relaxing:
 
     def respond(self, gradient: Array, state: State) -> PointAnswer:
         """See :class:`fe_contact.solids.base.Response`."""
-        found = self.sudden.respond(gradient, ())
+        found = self.sudden.strained(gradient)
         if not np.all(np.isfinite(found.energy)):
             return PointAnswer(found.stress, found.tangent, found.energy, state)
         held, share = self.fading.held(state), self.fading.at_once
@@ -79,8 +79,8 @@ class Relaxing:
             tangent=_stiffened(share * found.tangent, held),
             energy=share * found.energy + doubled(held, green(gradient)),
             state=self.fading.onwards(state, second(found.stress, gradient)),
-            pulls=None if found.pulls is None else share * found.pulls,
-            drifts=None if found.drifts is None else share * found.drifts,
+            pulls=share * found.pulls,
+            drifts=share * found.drifts,
         )
 
 

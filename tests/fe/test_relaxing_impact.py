@@ -108,6 +108,19 @@ def test_a_volume_that_stands_apart_does_not_relax(name: str) -> None:
     assert abs(lasting.stress[3]) < 0.5 * abs(law.sudden.respond(stretch, ()).stress[3])
 
 
+def test_what_bends_the_tangent_of_a_body_that_relaxes_drifts_with_its_gradient_as_it_says() -> None:
+    """By central differences; without that Newton's steps would foresee nothing, and be many."""
+    material = Relaxing(Hyperelastic(YEOH, 1.0, 2.0), Fading.over(NETWORK, 0.3))
+    state = material.respond(STRETCH[:, None], material.fading.at_rest(4, 1)).state
+    place, small = (STRETCH + 0.1 * SHEAR)[:, None], 1e-5
+    found = material.respond(place, state)
+    assert found.pulls is not None
+    assert found.drifts is not None
+    for row, way in enumerate(np.eye(5)):
+        above, below = (material.respond(place + sign * small * way[:, None], state).pulls for sign in (1.0, -1.0))
+        assert found.drifts[:, row] == pytest.approx((above - below) / (2.0 * small), rel=1e-7, abs=1e-7)
+
+
 def test_a_turn_does_not_relax() -> None:
     """S is that of the strain alone: a body that turns after it was strained bears F S, turned."""
     angle = 0.7
