@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from scipy.linalg import expm
@@ -82,6 +84,14 @@ def test_the_weights_of_a_scheme_are_those_of_its_sample(name: str) -> None:
     np.testing.assert_allclose(per_increment[slow], scheme.sample, rtol=1e-5)
     np.testing.assert_allclose(of_past[slow], 1, rtol=1e-5)
     np.testing.assert_allclose(per_increment + of_past / ratios, 1 / ratios, rtol=1e-7)
+
+
+def test_the_galerkin_weights_are_exact_to_rounding_whatever_the_step() -> None:
+    """Against their whole series, added up without rounding: short of where it takes over a difference cancels."""
+    ratios = np.geomspace(1e-8, 5.0, 400)
+    for weights, first in zip(galerkin.weights(np.ones_like(ratios), ratios), (2, 1), strict=True):
+        series = [math.fsum((-x) ** k / math.factorial(k + first) for k in range(60)) for x in ratios.tolist()]
+        assert weights == pytest.approx(series, rel=1e-13)
 
 
 def test_the_galerkin_weights_are_smooth_where_their_series_takes_over() -> None:
