@@ -83,6 +83,21 @@ def test_a_ratio_far_outside_the_interval_is_refused(name: str) -> None:
     assert np.linalg.norm(stiffer - stiff) < 1e-4 * np.linalg.norm(stiff)
 
 
+@pytest.mark.parametrize(("low", "high"), [(0.05, 0.5), (0.02, 20.0), (0.3, 0.31)])
+def test_the_stiffness_between_the_tabulated_ratios_is_exact_to_1e_10_and_none_of_them_lies_elsewhere(
+    low: float, high: float
+) -> None:
+    """Against the inverse of the compliance there. Ratios closer than a factor of 1.8 are tabulated over that."""
+    found = modes(BODIES["bonded"], low, high)
+    places, _ = found._table
+    middle, half = 0.5 * np.log(high * low), max(0.5 * np.log(high / low), 0.3)
+    assert places[[0, -1]] == pytest.approx([middle - half, middle + half], abs=1e-12)
+    assert np.all(np.diff(places) > 0.0)
+    for ratio in np.exp(np.random.default_rng(8).uniform(places[0], places[-1], 10)):
+        direct = np.linalg.inv(found.compliance(*moduli(poisson(ratio))))
+        assert np.linalg.norm(found.stiffness(ratio) - direct) < 1e-10 * np.linalg.norm(direct)
+
+
 def test_more_ratios_make_the_modes_better_by_orders(monkeypatch: pytest.MonkeyPatch) -> None:
     body = BODIES["bonded"]
     operator = operator_of(body, poisson(0.2))
