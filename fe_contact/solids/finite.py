@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from fe_contact.assembly.forms import Array
 from fe_contact.solids.base import PointAnswer, State
-from lumped.materials.energies.base import StrainEnergy, Strained, strained
+from lumped.materials.energies.base import Strained, StrainEnergy, strained
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -15,25 +16,32 @@ from fe_contact.settings import Numerics
 from fe_contact.steppers.struck import Deformable
 from lumped.materials import Relaxation
 
-# Steps between which the ratio of the moduli is looked for, in contact times; it changes little beyond.
+# Steps between which the ratio of the moduli is looked for at least, in contact times; but for a dashpot's it changes
+# little beyond.
 SHORTEST, LONGEST = 1e-6, 50.0
 
 
 class Pace(NamedTuple):
-    """What of an impact's settings says how long its steps may be: the scheme, and the contact time, s."""
+    """What of an impact's settings says how long its steps may be: the scheme, the contact time, s, and the shortest
+    step over it.
+    """
 
     scheme: str
     contact_time: float
+    shortest: float
 
     @classmethod
     def of(cls, numerics: Numerics) -> Pace:
-        """Of an impact."""
-        return cls(numerics.scheme, numerics.contact_time)
+        """Of an impact, whose first step takes about 10 (peak share/steps)^2 of its time; by decades, so that a run of
+        half the steps most often has the same.
+        """
+        first = 10.0 * (numerics.peak_share / numerics.steps) ** 2
+        return cls(numerics.scheme, numerics.contact_time, min(SHORTEST, 10.0 ** math.floor(math.log10(first))))
 
     def ratios(self, moduli: Moduli) -> tuple[float, float]:
         """Least and largest ratio of shear to bulk modulus that the steps may meet."""
         scheme = SCHEMES.get(self.scheme)
-        extremes = [share * self.contact_time for share in (SHORTEST, LONGEST)]
+        extremes = [share * self.contact_time for share in (self.shortest, LONGEST)]
         laws = [[step_law(modulus, scheme, length).now for modulus in moduli] for length in extremes]
         low, high = sorted(shear / bulk for bulk, shear in laws)
         return low, high

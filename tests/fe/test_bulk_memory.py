@@ -23,8 +23,9 @@ from fe_contact.bodies.pressing import held
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import plan
 from fe_contact.errors import RatioNotKnown
-from fe_contact.march.impact import march
+from fe_contact.march.impact import march, step_length
 from fe_contact.schemes.base import SCHEMES, MemoryScheme
+from fe_contact.steppers.bulk_surface import Pace
 from fe_contact.steppers.steps import Strike
 from fe_contact.targets import _round, layer, o_ring, ring, washer
 from fe_contact.targets.base import TARGETS, struck
@@ -96,6 +97,20 @@ def test_the_stiffness_between_the_tabulated_ratios_is_exact_to_1e_10_and_none_o
     for ratio in np.exp(np.random.default_rng(8).uniform(places[0], places[-1], 10)):
         direct = np.linalg.inv(found.compliance(*moduli(poisson(ratio))))
         assert np.linalg.norm(found.stiffness(ratio) - direct) < 1e-10 * np.linalg.norm(direct)
+
+
+@pytest.mark.parametrize(("steps", "share"), [(40, 0.5), (1024, 0.5), (8192, 0.5), (1024, 0.1), (160, 0.01)])
+def test_the_ratios_of_a_dashpot_are_known_from_the_first_step_on(steps: int, share: float) -> None:
+    """Which is the shorter the more there are, and its ratio the larger: far beyond what the network itself has."""
+    scene = Scene.load("polymer-layer")
+    chosen = plan(scene, {"elements_per_contact": 2.0}).numerics
+    slow = Relaxation(1e6, viscosity=1e6 * 1e-6 * chosen.contact_time)
+    scene = replace(scene, material=Material(slow, 0.45, constant="bulk"))
+    numerics = chosen.varied(steps=steps, peak_share=share)
+    stepper = struck(scene.geometry, numerics).stepper(Strike.of(scene), numerics, ())
+    first = step_length(0, steps, share)
+    assert stepper.step(stepper.touch(), (), first * numerics.contact_time).force > 0.0
+    assert min(1e-6, first / 30.0) <= Pace.of(numerics).shortest <= 1.2 * first, "and not from far before it on"
 
 
 def test_more_ratios_make_the_modes_better_by_orders(monkeypatch: pytest.MonkeyPatch) -> None:
