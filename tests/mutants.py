@@ -201,7 +201,6 @@ HARMLESS: dict[tuple[str, str, str], str] = {
         "1e-09 -> 1e-10",
     ): "shallower, where powers of layers too are told better",
     ("fe_contact/plastic/impact.py", "Rebound.deepest", "50 ->"): WORK,
-    ("fe_contact/plastic/course.py", "_depth_of", "1e-09 * deepest -> deepest"): WORK,
     ("fe_contact/steppers/flat_end.py", "FlatStepper.shortest", "1e-07 -> 1e-08"): WORK,
     ("fe_contact/steppers/struck.py", "FixedStepper.shortest", "0.0002 -> 2e-05"): WORK,
     ("fe_contact/steppers/scaled_surface.py", "Stepper.shortest", "0.0003 -> 3e-05"): WORK,

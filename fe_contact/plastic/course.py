@@ -237,9 +237,8 @@ def _depth_of(profile: Shape, pressure: float, deepest: float) -> float:
         area = np.pi * float(curve.contact_radius(depth)) ** 2
         return bool(float(curve.force(depth)) < pressure * area)
 
-    if not lower(1e-9 * deepest):
-        return 0.0
-    return min(_largest(lower, 1e-9 * deepest, 16.0 * deepest), 16.0 * deepest)
+    least, most = 1e-9 * deepest, 16.0 * deepest
+    return min(_largest(lower, least, most), most) if lower(least) else 0.0
 
 
 def _largest(holds: Callable[[float], bool], start: float, most: float = np.inf) -> float:
