@@ -117,7 +117,6 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/budget/plan.py", "_answer", ""): BEGINS,
     ("fe_contact/budget/plan.py", "half_space_stiffness", ""): BEGINS,
     ("fe_contact/budget/plan.py", "_finer", ""): BEGINS,
-    ("fe_contact/budget/plan.py", "_steps", "EARLY_PEAK / peak_share"): BEGINS,
     ("fe_contact/budget/plan.py", "FINER", ""): BEGINS,
     ("fe_contact/budget/plan.py", "DEFAULTS", "1000.0 -> 10000"): "a stiffer penalty errs by less, and costs nothing",
     ("lumped/laws/rod_waves.py", "COARSEST, FINEST, FINER", ""): BEGINS,
