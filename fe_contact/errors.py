@@ -69,7 +69,8 @@ class RatioNotKnown(NotReached):
 
     def __init__(self, ratio: float, low: float, high: float) -> None:
         known = f"the body is known from {low:.3g} to {high:.3g}"
-        cure = "cure: an earlier motion.end_time, or more numerics.steps"
+        short, long = ("another motion.end_time, or fewer", "an earlier motion.end_time, or more")
+        cure = f"cure: {short if ratio > high else long} numerics.steps"
         super().__init__(f"a step in which the shear modulus is {ratio:.3g} of the bulk modulus; {known}; {cure}")
 
 
