@@ -181,6 +181,13 @@ def test_coloured_noise_and_a_record_that_ends_early_are_no_deviation(polymer: t
         assert verdicts(compare(*polymer, (), record))[0].startswith("the reference agrees with the measured curve")
 
 
+@pytest.mark.parametrize("force", [0.0, -1.0])
+def test_a_curve_without_a_contact_is_judged(polymer: tuple[Solved, Result], force: float) -> None:
+    time = np.linspace(0.0, float(polymer[1].history.time[-1]), 50)
+    (said, *_) = verdicts(compare(*polymer, (), Measured(time, np.full(50, force))))
+    assert re.search(r"the measured peak is \S+ % lower", said)
+
+
 def test_a_curve_on_another_scale_is_judged(polymer: tuple[Solved, Result]) -> None:
     """Far higher than the reference, whose whole force lies below its tenth."""
     history = polymer[1].history

@@ -179,26 +179,27 @@ def _curve(told: Told, reference: Result, measured: Measured) -> Judgement:
     bars. A record that ends before its force does tells no duration, impulse or norm.
     """
     near = (measured.time >= 0.0) & (measured.time <= (1.0 + ABOUT) * told.duration)
-    near |= not (measured.force[near] > 0.0).any()  # nothing presses there: all of it is judged
+    near |= np.count_nonzero(measured.force[near] > 0.0) < LEAST_ROWS  # nothing presses there: all of it is judged
     time, force = measured.time[near], measured.force[near]
     own = reference.history.force_at(time)
     pulse, deviation, alike = MeasuredPulse(time, force), *_noise(measured, reference)
-    noisy = deviation > SEEN * pulse.peak
+    peak = abs(pulse.peak) or math.inf
+    noisy = deviation > SEEN * peak
     beyond = pulse.smooth - pulse.averaged(own) if noisy else force - own
     every = np.union1d(told.time[(told.time > time[0]) & (told.time < time[-1])], time)
     steady = Measured(every, reference.history.force_at(every) + np.interp(every, time, beyond))
     scored = score(reference.history, steady)
     errors: dict[str, float | None] = {name: getattr(scored, name) for name in (*QUANTITIES, *DISTANCES)}
     errors |= {"contact_radius_rebound": None, "pressure_rebound": None} | force_errors(told, steady)
-    left = DEVIATIONS * deviation * math.sqrt(alike / (pulse.window if pulse.noisy else 1)) / pulse.peak
+    left = DEVIATIONS * deviation * math.sqrt(alike / (pulse.window if pulse.noisy else 1)) / peak
     bars = {name: _bar(reference, name) + left for name in QUANTITIES} | force_bars(told, left)
     if noisy:  # what is noisy never comes to zero: how long either is above a tenth of its peak is compared
         theirs = MeasuredPulse(time, own)
         errors |= {"shape": None, "duration": pulse.width / theirs.width - 1.0}
     if not pulse.ended or (noisy and pulse.level > LEVEL * pulse.peak):
         errors |= dict.fromkeys(("duration", "impulse", "history", "shape"))
-    bars["duration"] += 2.0 * float(np.diff(time).max()) / told.duration
-    return Judgement(MEASURED, 100 * scored.normalized_error, errors, bars, noise=deviation / pulse.peak)
+    bars["duration"] += 2.0 * float(np.diff(time).max(initial=0.0)) / told.duration
+    return Judgement(MEASURED, 100 * scored.normalized_error, errors, bars, noise=deviation / peak)
 
 
 def _noise(measured: Measured, reference: Result) -> tuple[float, float]:
