@@ -188,6 +188,12 @@ def test_a_curve_without_a_contact_is_judged(polymer: tuple[Solved, Result], for
     assert re.search(r"the measured peak is \S+ % lower", said)
 
 
+def test_a_record_that_begins_after_the_contact_does_not_agree(polymer: tuple[Solved, Result]) -> None:
+    history = polymer[1].history
+    late = Measured(history.time + 5.0 * float(history.time[-1]), history.force)
+    assert "differs from the measured curve by up to 100 % of the peak" in verdicts(compare(*polymer, (), late))[0]
+
+
 def test_a_curve_on_another_scale_is_judged(polymer: tuple[Solved, Result]) -> None:
     """Far higher than the reference, whose whole force lies below its tenth."""
     history = polymer[1].history

@@ -186,7 +186,8 @@ def _curve(told: Told, reference: Result, measured: Measured) -> Judgement:
     peak = abs(pulse.peak) or math.inf
     noisy = deviation > SEEN * peak
     beyond = pulse.smooth - pulse.averaged(own) if noisy else force - own
-    every = np.union1d(told.time[(told.time > time[0]) & (told.time < time[-1])], time)
+    step = float(np.diff(time).max(initial=0.0))  # before its first row a record is known as far, after the last not
+    every = np.union1d(told.time[(told.time > time[0] - step) & (told.time < time[-1])], time)
     steady = Measured(every, reference.history.force_at(every) + np.interp(every, time, beyond))
     scored = score(reference.history, steady)
     errors: dict[str, float | None] = {name: getattr(scored, name) for name in (*QUANTITIES, *DISTANCES)}
@@ -198,7 +199,7 @@ def _curve(told: Told, reference: Result, measured: Measured) -> Judgement:
         errors |= {"shape": None, "duration": pulse.width / theirs.width - 1.0}
     if not pulse.ended or (noisy and pulse.level > LEVEL * pulse.peak):
         errors |= dict.fromkeys(("duration", "impulse", "history", "shape"))
-    bars["duration"] += 2.0 * float(np.diff(time).max(initial=0.0)) / told.duration
+    bars["duration"] += 2.0 * step / told.duration
     return Judgement(MEASURED, 100 * scored.normalized_error, errors, bars, noise=deviation / peak)
 
 
