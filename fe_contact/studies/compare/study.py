@@ -186,7 +186,7 @@ def _curve(told: Told, reference: Result, measured: Measured) -> Judgement:
     peak = abs(pulse.peak) or math.inf
     noisy = deviation > SEEN * peak
     beyond = pulse.smooth - pulse.averaged(own) if noisy else force - own
-    step = float(np.diff(time).max(initial=0.0))  # before its first row a record is known as far, after the last not
+    step = float(np.diff(time).max(initial=0.0))  # so far before its first row the record is taken as known
     every = np.union1d(told.time[(told.time > time[0] - step) & (told.time < time[-1])], time)
     steady = Measured(every, reference.history.force_at(every) + np.interp(every, time, beyond))
     scored = score(reference.history, steady)
