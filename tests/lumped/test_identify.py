@@ -435,43 +435,45 @@ def test_the_corner_of_a_low_pass_stands_in_for_the_silence() -> None:
     assert told.curves[0].deviation == pytest.approx(0.01 * force.max(), rel=0.15)
 
 
+# A polymer struck so fast that an instrument is slow beside it.
+POLYMER = {"target.material.E1": 2.2e6, "target.material.E2": 1.3e6, "target.material.C1": 1.5e4}
+STRUCK = {"striker.velocity": 0.5}
+FAST = Scene.load("polymer-sphere", POLYMER | STRUCK)
+
+
 @pytest.mark.tenth
 def test_a_low_pass_that_filtered_the_force_too_is_warned_of() -> None:
     """Of second order, its corner at ten times the contact's rate: the values are off, whatever the residuals say."""
-    true = {"E1": 2.2e6, "E2": 1.3e6, "C1": 1.5e4}
-    own, fast = {f"target.material.{name}": value for name, value in true.items()}, {"striker.velocity": 0.5}
-    scene = Scene.load("polymer-sphere", own | fast)
-    history = simulate(laws.get("ting").of(scene), scene).history
+    history = simulate(laws.get("ting").of(FAST), FAST).history
     time = np.arange(-0.01, 0.04, 5e-5)
     force = history.force_at(time) + 0.001 * history.force.max() * np.random.default_rng(1).normal(size=time.size)
     filtered = lfilter(*butter(2, 1e3, fs=2e4), force)
     for record, warned in ((force, False), (filtered, True)):
-        found = identify({"drop": Curve(time, record)}, "polymer-sphere", list(true), overrides=fast)
-        said = f"low pass; if that filtered the force too, the intervals of {', '.join(own)} do not hold their values"
+        found = identify({"drop": Curve(time, record)}, "polymer-sphere", list(POLYMER), overrides=STRUCK)
+        said = (
+            f"low pass; if that filtered the force too, the intervals of {', '.join(POLYMER)} do not hold their values"
+        )
         assert any(said in one for one in found.warnings) == warned
-        assert all(found.parameters[name].holds(value) != warned for name, value in own.items())
+        assert all(found.parameters[name].holds(value) != warned for name, value in POLYMER.items())
 
 
 @pytest.mark.tenth
 def test_a_low_pass_that_is_known_leaves_the_values_as_they_were() -> None:
     """Of first order, before the record's clock, as an instrument's: the intervals hold the truth only where it is."""
-    true = {"E1": 2.2e6, "E2": 1.3e6, "C1": 1.5e4}
-    own, fast = {f"target.material.{name}": value for name, value in true.items()}, {"striker.velocity": 0.5}
-    scene = Scene.load("polymer-sphere", own | fast)
-    history = simulate(laws.get("ting").of(scene), scene).history
+    history = simulate(laws.get("ting").of(FAST), FAST).history
     often = 40  # steps of the instrument in one of the record
     time = np.arange(-0.01, 0.04, 5e-5 / often)
     shaken = history.force_at(time) + 0.02 * history.force.max() * np.random.default_rng(4).normal(size=time.size)
     fades = np.exp(-2.0 * np.pi * 600.0 * 5e-5 / often)
     record = Curve(time[::often], lfilter([1.0 - fades], [1.0, -fades], shaken)[::often])
     aware, blind = (
-        identify({"drop": record}, "polymer-sphere", list(true), overrides=fast, low_pass=known)
+        identify({"drop": record}, "polymer-sphere", list(POLYMER), overrides=STRUCK, low_pass=known)
         for known in (600.0, None)
     )
     assert aware.adequate
-    assert all(aware.parameters[name].holds(value) for name, value in own.items())
+    assert all(aware.parameters[name].holds(value) for name, value in POLYMER.items())
     assert not any("low pass" in one for one in aware.warnings)
-    assert not all(blind.parameters[name].holds(value) for name, value in own.items())
+    assert not all(blind.parameters[name].holds(value) for name, value in POLYMER.items())
     assert any("cure: --low-pass HZ" in one for one in blind.warnings)
 
 
