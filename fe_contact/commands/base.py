@@ -333,8 +333,7 @@ def _doubts(body: Scene | Indenter) -> Iterator[str]:
         if 0.0 < least < SOFTEST:
             told = f"{body.name}: the modulus {verb} {least:.3g} Pa, less than any solid's"
             yield f"{told}; are the values in Pa (9 GPa = 9e9)?"
-    volume = body.shape.whole_mass(1.0) if isinstance(body, Scene) and body.shape is not None else None
-    if volume and isinstance(body, Scene) and 0.0 < body.mass < AIR * volume:
+    if isinstance(body, Scene) and body.shape is not None and 0.0 < body.mass < (body.shape.whole_mass(AIR) or 0.0):
         yield f"{body.name}: a whole ball of this radius would be lighter than air; are radius in m and mass in kg?"
 
 

@@ -17,8 +17,8 @@ from lumped import laws
 from lumped.errors import BadInput, Fault, FeContactError
 from lumped.fit import Fit, fit
 from lumped.fit.space import GAP
-from lumped.laws._force_law import ForceLaw, between_masses
-from lumped.laws._power_law import PowerLaw
+from lumped.laws._force_law import ForceLaw, between_masses, bodies_of
+from lumped.laws._power_law import PowerLaw, spring_depth
 from lumped.laws.base import Law, simulate
 from lumped.laws.correspondence import Correspondence
 from lumped.laws.hertz import HertzLaw
@@ -233,9 +233,8 @@ def _of_one_speed(law: PowerLaw, factor: float, scene: Scene) -> UniaxialMateria
 
 def _steps(law: PowerLaw, scene: Scene) -> str:
     """In which steps Newton's iteration converges all the same: those for the tangent at the largest elastic depth."""
-    mass, power = scene.reduced_mass, law.alpha + 1.0
-    depth = (0.5 * power * mass * scene.velocity**2 / law.k) ** (1.0 / power)
-    step = NEWTON * math.sqrt(mass / (law.alpha * law.k * depth ** (law.alpha - 1.0)))
+    depth = spring_depth(law.k, law.alpha, bodies_of(scene))
+    step = NEWTON * math.sqrt(scene.reduced_mass / (law.alpha * law.k * depth ** (law.alpha - 1.0)))
     told = f"take steps below {step:.2g} s at {scene.velocity:.3g} m/s, or an explicit scheme"
     return f"its tangent has the wrong sign: {told}"
 

@@ -73,12 +73,17 @@ class Undamped(PowerLaw):
         return 0.0, 0.0 * depth
 
 
+def spring_depth(k: float, alpha: float, bodies: Bodies) -> float:
+    """The greatest depth of the impact on k depth^alpha, m."""
+    power = alpha + 1.0
+    return math.pow(0.5 * power * bodies.mass / k * bodies.velocity**2, 1.0 / power)
+
+
 def spring_contact_time(k: float, alpha: float, bodies: Bodies) -> float:
     """2 (d_m/v) int_0^1 dx/sqrt(1 - x^(alpha + 1)), s, of the impact on k depth^alpha."""
     power = alpha + 1.0
-    depth = math.pow(0.5 * power * bodies.mass / k * bodies.velocity**2, 1.0 / power)
     integral = math.sqrt(math.pi) * math.gamma(1.0 + 1.0 / power) / math.gamma(0.5 + 1.0 / power)
-    return 2.0 * depth / bodies.velocity * integral
+    return 2.0 * spring_depth(k, alpha, bodies) / bodies.velocity * integral
 
 
 def spring_of_peak(force: float, alpha: float, bodies: Bodies) -> float:

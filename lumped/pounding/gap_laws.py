@@ -8,7 +8,7 @@ from typing import Annotated
 from lumped import laws
 from lumped.errors import BadInput, Fault
 from lumped.laws._force_law import ForceLaw, between_masses
-from lumped.laws._power_law import PowerLaw, spring_of_peak
+from lumped.laws._power_law import PowerLaw, spring_depth, spring_of_peak
 from lumped.laws.correspondence import Correspondence, law_of
 from lumped.pounding.frames import Gap, PoundingFrames
 from lumped.scene.scene import Scene
@@ -125,5 +125,4 @@ def exponent(law: GapLaw, frames: PoundingFrames, gap: Gap) -> float:
 
 def peak_of_spring(k: float, alpha: float, bodies: Bodies) -> float:
     """Of the elastic impact on k depth^alpha, N."""
-    depth = (0.5 * (alpha + 1.0) * bodies.mass * bodies.velocity**2 / k) ** (1.0 / (alpha + 1.0))
-    return float(k * depth**alpha)
+    return float(k * spring_depth(k, alpha, bodies) ** alpha)
