@@ -12,12 +12,14 @@ from numpy.polynomial import chebyshev as reference
 from lumped import Scene, simulate
 from lumped.errors import FeContactError
 from lumped.laws import correspondence, ting
-from lumped.laws._hereditary import once
+from lumped.laws._hereditary import FEW, MORE, once, problem_of
 from lumped.laws.base import simulation
 from lumped.numbers import Array
 from lumped.result.result import Result
+from lumped.solvers.hereditary.march import Settings
 from lumped.solvers.hereditary.path import ByField, Path, chebyshev
-from lumped.solvers.hereditary.pieces import Followed, together
+from lumped.solvers.hereditary.pieces import Followed, alone, together
+from lumped.solvers.hereditary.rebound import Rebound
 
 
 def test_polynomials_are_chebyshev_s_of_few_places_and_of_many() -> None:
@@ -97,6 +99,24 @@ def test_impacts_of_one_kind_cost_no_more_calls_than_the_one_that_needs_most(mon
     together(simulation(correspondence.of(scene), scene, 1e-3) for scene in scenes)
     assert len(calls) - each < 0.5 * each
     assert max(calls) == len(apart)
+
+
+@pytest.mark.parametrize("rtol", [1e-5, 1e-9])
+@pytest.mark.parametrize(("name", "keys"), [COMPANY[0], COMPANY[5], COMPANY[6], *COMPANY[8:]])
+def test_pieces_solved_again_with_more_nodes_begin_from_what_the_few_found(
+    name: str, keys: dict[str, object], rtol: float
+) -> None:
+    """The bar costs one Newton step a piece, or two: three or more without."""
+    problem = problem_of(scene := Scene.load(name, keys))
+    few, more = Settings(rtol, FEW), Settings(rtol, MORE)
+    first = alone(ting.solve(problem, scene.end_time / problem.scales.time, few))
+    again = alone(ting.solve(problem, scene.end_time / problem.scales.time, more, first))
+    assert isinstance(first.outward, Rebound)
+    assert isinstance(again.outward, Rebound)
+    for before, after in ((first.inward, again.inward), (first.outward, again.outward)):
+        pieces = after.path.breaks.size - 1
+        assert before.path.breaks.size - 1 == pieces
+        assert after.steps <= 2 * pieces
 
 
 def test_an_impact_that_fails_takes_none_with_it() -> None:
