@@ -17,7 +17,8 @@ from lumped.laws import _force_law
 from lumped.laws.correspondence import Correspondence
 from lumped.result.history import End
 from lumped.result.result import Result
-from lumped.solvers.point.memory import RULES, rule_of
+from lumped.solvers.point.bodies import Bodies, State
+from lumped.solvers.point.memory import RULES, HereditaryLoad, recovering, rule_of
 from lumped.solvers.point.track import Outcome
 
 Build = Callable[..., Scene]
@@ -96,6 +97,24 @@ def test_memories_differ_only_while_something_is_remembered(impact: Build) -> No
     spread = {gravity: np.ptp(values) for gravity, values in flights.items()}
     assert spread[0.05] < 1e-6  # a flight of some hundred relaxation times
     assert spread[0.6] > 1e-5
+
+
+@pytest.mark.parametrize("flight", [0.01, 1.0, 30.0, 3000.0])
+def test_a_surface_that_creeps_back_is_met_where_it_stands_by_then(
+    flight: float, impact: Build, unit_time: float
+) -> None:
+    """E_glassy y = E_1 w without force: y falls in the time tau E_glassy/E_inf, of which the flight lasts so many."""
+    scene = impact(**SOLID)
+    modulus, depth, speed = scene.contact_modulus, 0.02 * scene.velocity * unit_time, 0.5 * scene.velocity
+    load = HereditaryLoad(scene.profile.load_curve, modulus)
+    dent, creeping = float(load.load(depth)), modulus.times[0] * modulus.glassy / modulus.equilibrium
+    bodies = Bodies(scene.mass, scene.velocity, 2.0 * speed / (flight * creeping))
+    met = recovering(load, bodies, State(depth, -speed, 0.0, (modulus.glassy / modulus.moduli[0] * dent,)))
+    assert met is not None
+    time, there = met
+    assert time > speed / bodies.gravity
+    assert load.load(there.depth) == pytest.approx(dent * np.exp(-time / creeping), rel=1e-9, abs=1e-12 * dent)
+    assert there.depth == pytest.approx(depth - time * (speed - 0.5 * bodies.gravity * time), abs=1e-12 * speed * time)
 
 
 def test_tension_to_depth_zero_as_published(impact: Build, unit_time: float) -> None:
