@@ -23,7 +23,7 @@ from fe_contact.solids.block import press as press_block
 from fe_contact.solids.bulk import Bulk, Pattern
 from fe_contact.solids.contact import OnDeformed, OnRound, OnUndeformed
 from fe_contact.solids.finite import Hyperelastic
-from fe_contact.solids.newton import BeyondRange, Equilibrium, EquilibriumLost, _descended, balanced
+from fe_contact.solids.newton import BeyondRange, Encounter, Equilibrium, EquilibriumLost, _descended, balanced
 from fe_contact.solids.pressing import Solid, advanced, press
 from fe_contact.solids.rolled import Rolled
 from lumped import BadInput, Scene, laws
@@ -273,6 +273,27 @@ def test_a_nearly_incompressible_body_is_pressed_deep_in_few_iterations() -> Non
     assert found.iterations < 60
     assert found.error < 1e-6
     assert advanced(body.encounter, first, first.balance.depth, 500.0).iterations == 1, "where it is already"
+
+
+@pytest.mark.parametrize("most", [0.55, 0.1, 0.0])
+def test_a_body_that_can_be_pressed_by_little_at_once_reaches_any_depth_by_way_of_it(
+    most: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As nearly incompressible ones: from rest by half as much until it goes; where nothing goes that is named."""
+    body, at_once = solid(sphere(0.3), 0.2), pressing.pressed_first
+    without = reached(body, 0.2).balance.force
+
+    def pressed(encounter: Encounter, depth: float, *more: Any) -> Equilibrium:
+        if depth > most * 0.2 / body.unit:
+            raise EquilibriumLost("for this test")
+        return at_once(encounter, depth, *more)
+
+    monkeypatch.setattr(pressing, "pressed_first", pressed)
+    if most:
+        assert reached(body, 0.2).balance.force == pytest.approx(without, rel=1e-7)
+    else:
+        with pytest.raises(EquilibriumLost, match="for this test"):
+            reached(body, 0.2)
 
 
 def test_iterations_from_rest_to_a_depth_are_those_of_all_its_equilibria(monkeypatch: pytest.MonkeyPatch) -> None:
