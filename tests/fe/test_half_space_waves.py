@@ -132,6 +132,22 @@ def test_how_well_an_end_is_read_covers_smooth_forces_and_is_about_what_chatter_
         assert np.all(off <= spread + 1e-12)
 
 
+def test_a_last_step_that_chatters_leaves_no_spike_of_force_before_the_end() -> None:
+    """Its impulse falls within what is left of the step: where that were nothing, the force would be its peak."""
+    rng, strike = np.random.default_rng(7), Strike.of(Scene.load("polymer-sphere-waves"))
+    for steps in rng.uniform(32.0, 128.0, 400):
+        time = np.arange(math.ceil(steps) + 1) / steps
+        force = time * np.maximum(1.0 - time, 0.0) ** 1.5 * rng.uniform(0.1, 1.9, time.size)
+        read = parting(time, force, 1.5)
+        assert read is not None
+        impulse = np.append(0.0, np.cumsum(0.5 * (force[1:] + force[:-1]) / steps))
+        rows, end = np.append(time[:-1], read[0]), read[0]
+        mean = np.append(0.0, impulse[1:] / rows[1:])
+        x, spread = np.sqrt(rows / end), np.array([0.0, 1.0])
+        curve = Curve(strike, end, True, x, mean, rows * (end - rows), spread, spread, 0.0, {})
+        assert np.abs(curve.resolved(np.linspace(x[-3], 1.0, 400))[1]).max() < 0.2 * force.max()
+
+
 def test_too_few_steps_tell_no_end() -> None:
     time = np.arange(8.0)
     assert parting(time, np.array([0.0, 1.0, 2.0, 3.0, 2.0, 1.0, 0.5, 0.0]), 1.5) is None
