@@ -500,11 +500,16 @@ def test_a_body_softer_by_a_share_moves_the_end_by_that_share_or_the_time_in_whi
     assert Softening(replace(slow, separated=False), 1e-3).errors["duration"] == 0.0
 
 
-def test_a_force_of_which_nothing_errs_is_known_but_for_its_last_step() -> None:
+@pytest.mark.parametrize("duration", [1.0, 1e-3])
+def test_a_force_of_which_nothing_errs_is_known_but_for_its_last_step(duration: float) -> None:
+    """There it falls to nothing in any way from what it is at the step's beginning."""
     nothing: Any = None
-    found = Budget(TRUTH, nothing, dict.fromkeys(CAUSES, ()), nothing, nothing)
-    times = np.array([0.0, 0.5, 0.999 * TRUTH.last_step, 0.5 * (1.0 + TRUTH.last_step)])
-    assert found.force_error(times) == pytest.approx([0.0, 0.0, 0.0, TRUTH.force(np.array([TRUTH.last_step]))[0]])
+    curve, last = replace(TRUTH, duration=duration), duration * (1.0 - 1.0 / STEPS) ** 2
+    found = Budget(curve, nothing, dict.fromkeys(CAUSES, ()), nothing, nothing)
+    times = np.array([0.0, 0.5 * last, 0.999 * last, 1.001 * last, duration])
+    held = float(curve.force(np.array([last]))[0])
+    assert held > 0.0
+    assert found.force_error(times) == pytest.approx([0.0, 0.0, 0.0, held, held])
 
 
 def in_units(curve: Curve, time: float, length: float, force: float) -> Curve:
