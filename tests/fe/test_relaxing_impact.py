@@ -263,7 +263,11 @@ def test_steps_on_a_spring_under_gravity_err_as_their_square(
     for steps in (60, 120):
         strike = Strike(lambda r: r**2, mass, velocity, gravity, Relaxation(1.0), 10.0)
         numerics = settings_of(strike, steps=steps).varied(contact_time=duration, peak_share=0.5)
-        found = Curve.of(on_spring(strike, numerics, unit, scale).march(), strike).quantities
+        march = on_spring(strike, numerics, unit, scale).march()
+        found, given = Curve.of(march, strike).quantities, gravity * march.time[-1] - march.impulse[-1] / mass
+        assert march.energy["out"] == pytest.approx(0.5 * mass * (velocity + given) ** 2, rel=1e-11), (
+            "as the impulse leaves it"
+        )
         cut = on_spring(replace(strike, end_time=0.6 * duration), numerics, unit, scale).march()
         depth, _, passed = solve_ivp(
             moves, (0.0, 0.6 * duration), [0.0, velocity, 0.0], "DOP853", rtol=1e-11, atol=1e-13
