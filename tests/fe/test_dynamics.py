@@ -180,6 +180,17 @@ def test_a_parallel_viscosity_asks_for_an_implicit_scheme() -> None:
         moved(oscillator(Relaxation(1.0, viscosity=0.1)), "central_difference", 0.1, 1.0)
 
 
+@pytest.mark.parametrize("name", IMPLICIT)
+def test_a_parallel_viscosity_is_a_dashpot_by_the_stiffness(name: str) -> None:
+    """And one dashpot among others adds up with it."""
+    stiff = (Part(sparse.csc_matrix([[4.0]]), Relaxation(0.5, viscosity=0.05)),)
+    viscous = moved(replace(oscillator(Relaxation(1.0), dashpot=0.1), parts=stiff), name, 0.1, 4.0)
+    damped = moved(oscillator(Relaxation(2.0), dashpot=0.3), name, 0.1, 4.0)
+    for one, other in zip(viscous.samples, damped.samples, strict=True):
+        assert one.displacement == pytest.approx(other.displacement, rel=1e-12, abs=1e-12)
+        assert one.velocity == pytest.approx(other.velocity, rel=1e-12, abs=1e-12)
+
+
 # mass
 
 
