@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,7 +14,7 @@ from scipy.special import beta, betainc
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import CAUSES, Budget, Causes
-from fe_contact.budget.certify import ABOUT_A_STEP, Trust, _by_mesh, _rows, _time_steps, trust
+from fe_contact.budget.certify import ABOUT_A_STEP, Trust, _by_mesh, _judged, _rows, _time_steps, trust
 from fe_contact.budget.curve import Curve, extrapolated, squared_radius
 from fe_contact.budget.several import _error, _flight, _late
 from fe_contact.budget.variation import RIPPLED, SAFETY, STEEPER, Softening, Variation
@@ -479,6 +480,31 @@ def test_a_jitter_errs_by_what_every_other_row_less_changes(flat: bool, settings
     change = np.abs(force - made_up(STEPS, np.zeros_like).force(time))
     norm = np.sqrt(np.trapezoid(change**2, time) / np.trapezoid(force**2, time))
     assert jitter.errors["history_l2"] == pytest.approx(norm, rel=0.05)
+
+
+@pytest.mark.parametrize(("power", "cause"), [(0.0, "mesh"), (2.0, "time_step")])
+def test_a_jitter_counts_once_by_the_steps_where_it_falls_with_them_and_else_by_the_mesh(
+    power: float, cause: str, settings: Numerics
+) -> None:
+    """On a mesh that follows the contact, where nothing else errs."""
+
+    def run(number: int, numerics: Numerics) -> Curve:
+        size = 1e-5 * (STEPS / numerics.steps) ** power
+        smooth = made_up(numerics.steps, lambda share: (STEPS / numerics.steps) * 1e-9 * share)
+        by_turns = np.where(np.arange(numerics.steps + 1) % 2, size * smooth.x, 0.0)
+        return replace(smooth, mean_force=smooth.mean_force + by_turns)
+
+    nothing: Any = None
+    surface: Any = SimpleNamespace(follows_contact=True)
+    runs: Any = SimpleNamespace(surface=lambda one: surface)
+    value, changes = _judged(runs, run, 0, settings, False)
+    found = Budget(value, nothing, changes, nothing, settings)
+    steps = _time_steps(partial(run, 0), settings, False)
+    of_steps, jitter = (sum(one.errors["impulse"] for one in some if one) for some in (steps.changes, steps.jitter))
+    assert jitter > 0.0
+    expected = dict.fromkeys(CAUSES, 0.0) | {"time_step": of_steps}
+    expected[cause] += jitter
+    assert {one: found.error("impulse", one) for one in CAUSES} == pytest.approx(expected)
 
 
 def test_a_body_softer_by_a_share_moves_the_speed_by_what_it_moves_the_impulse_and_the_force_by_the_share() -> None:
