@@ -13,11 +13,23 @@ from scipy.sparse import linalg
 import meshes
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import SETTING
+from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import EARLY_PEAK
 from fe_contact.budget.refine import AIM, factors, missing
 from fe_contact.settings import RANGES
 from fe_contact.steppers.steps import March, Strike, Work
-from fe_contact.waves.certify import AT, GROWTH, ORDER, ROWS, WaveRuns, certify, curve_of, reading
+from fe_contact.waves.certify import (
+    AT,
+    GROWTH,
+    ORDER,
+    ROWS,
+    Moved,
+    WaveRuns,
+    certify,
+    curve_of,
+    reading,
+    tells_of_mesh,
+)
 from fe_contact.waves.plan import graded, viscous_share
 from fe_contact.waves.targets import half_space
 from fe_contact.waves.targets.half_space import moving
@@ -202,3 +214,32 @@ def test_counted_factorisations_are_those_of_every_length_of_step(monkeypatch: p
     assert work.marches == 5
     assert made[0] == work.factorizations > 3 * work.marches
     assert runs.curve(1, numerics) is None, "there is no second contact"
+
+
+@pytest.mark.parametrize("order", [1, 2, 3, 4])
+def test_every_mesh_that_is_accepted_is_judged_by_one_that_can_be_made(order: int) -> None:
+    low, high = RANGES["elements_per_contact"]
+    numerics = half_space.plan(Scene.load("steel-ball-waves"), {"order": order}).numerics
+    for elements in np.geomspace(low, high, 12):
+        other, _ = tells_of_mesh(numerics.varied(elements_per_contact=float(elements)))
+        meshes.half_space_for_waves(other.elements_per_contact, 0.5, 2.0)
+
+
+def test_a_mesh_of_few_nodes_is_judged_by_one_that_does_not_err_alike_by_chance() -> None:
+    """Ten or twelve of them along the contact radius: against one of 36, half as many miss the error."""
+    scene = Scene.load("steel-ball-waves")
+    numerics = half_space.plan(scene, {"steps": 64, "tolerance": 0.1, "order": 4}).numerics
+    runs = WaveRuns(scene, Strike.of(scene), moving, 32)
+
+    def curve(**changes: float) -> Curve:
+        found = runs.curve(0, numerics.varied(**changes))
+        assert found is not None
+        return found
+
+    truth = curve(elements_per_contact=9.0).quantities
+    for elements in (2.5, 3.0):
+        few = curve(elements_per_contact=elements)
+        other, trusted = tells_of_mesh(numerics.varied(elements_per_contact=elements))
+        bars = Moved(few, curve(elements_per_contact=other.elements_per_contact), trusted).errors
+        for name, value in few.quantities.items():
+            assert abs((value or 0.0) - (truth[name] or 0.0)) <= bars[name], (elements, name)
