@@ -6,7 +6,7 @@ boundaries and raises :class:`meshes.errors.MeshError`; nothing here knows a mat
 
 from meshes.cylinder import cylinder
 from meshes.errors import GmshMissing, MeshError
-from meshes.half_space import half_space, half_space_for_waves, half_space_under_contacts
+from meshes.half_space import half_space, half_space_for_waves
 from meshes.layer import layer, layer_for_waves, layer_under_rim
 from meshes.o_ring import o_ring
 from meshes.prism import prism
@@ -21,7 +21,6 @@ __all__ = [
     "cylinder",
     "half_space",
     "half_space_for_waves",
-    "half_space_under_contacts",
     "layer",
     "layer_for_waves",
     "layer_under_rim",

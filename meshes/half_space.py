@@ -21,14 +21,15 @@ GROWTH = 2.0  # growth of the element size per unit distance, for one element pe
 ZONE = 1.1  # where contacts may end anywhere the surface is fine up to this radius
 WAVE_GROWTH = 3.0  # of the element size per unit distance, for one element along the radius
 OF_WAVE_GROWTH = 0.15  # of it at most, where elements along the radius are few: waves would not be seen on their way
-INWARD_GROWTH = 0.6  # the same without waves: plastic forces differ by less than 1e-3 from those at 0.3
 LARGEST_GROWTH = 1.5  # steeper gradings leave gmsh too little room for well-shaped triangles
 
 
-def half_space(elements_per_contact: float, far_radius: float) -> MeshTri:
+def half_space(
+    elements_per_contact: float, far_radius: float, at_edge: float = EDGE_REFINEMENT, growth: float = GROWTH
+) -> MeshTri:
     """Triangles of the half-space ``z <= 0`` around a contact circle ``r = 1``.
 
-    The size function is ``1/elements_per_contact`` inside the contact, 24 times finer at its edge
+    The size function is ``1/elements_per_contact`` inside the contact, many times finer at its edge
     (where the pressure ends like a square root) and grows linearly away from both. Doubling
     ``elements_per_contact`` halves that function everywhere; below about eight it is so steep that
     triangles can follow it only in part, and their number grows by less than four.
@@ -37,6 +38,8 @@ def half_space(elements_per_contact: float, far_radius: float) -> MeshTri:
     ----------
     elements_per_contact : number of elements along the contact radius, 0.25 to 64.
     far_radius : radius of the meshed quarter disc in contact radii, 2 to 1e6.
+    at_edge : how many times finer elements are at the edge, 1 to 100.
+    growth : of the element size per unit distance, for one element along the radius, 0.1 to 3.
 
     Returns
     -------
@@ -50,19 +53,20 @@ def half_space(elements_per_contact: float, far_radius: float) -> MeshTri:
     size = 1.0 / checked("elements_per_contact", elements_per_contact, 0.25, 64.0)
     if not 2.0 <= far_radius <= 1e6:
         raise MeshError(f"far_radius = {far_radius:g}: accepted 2 to 1e6 contact radii")
-    growth = min(GROWTH * size, LARGEST_GROWTH)
-    near_edge = f"({size / EDGE_REFINEMENT!r}+{growth!r}*{distance(1.0, 0.0)})"
-    elsewhere = f"({size!r}+{growth!r}*{beyond(distance(0.0, 0.0), 1.0)})"
+    steepest = min(checked("growth of elements", growth, 0.1, 3.0) * size, LARGEST_GROWTH)
+    finest = size / checked("refinement at the edge", at_edge, 1.0, 100.0)
+    near_edge = f"({finest!r}+{steepest!r}*{distance(1.0, 0.0)})"
+    elsewhere = f"({size!r}+{steepest!r}*{beyond(distance(0.0, 0.0), 1.0)})"
     return _quarter(smaller(near_edge, elsewhere), 1.0, far_radius)
 
 
 def half_space_for_waves(
     elements_per_radius: float, smallest: float, far_radius: float, finer: float = 1.0, growth: float = WAVE_GROWTH
 ) -> MeshTri:
-    """Triangles under contacts that end anywhere up to ``r = 1``, see :func:`half_space_under_contacts`.
+    """Triangles of the same outline under contacts that end anywhere up to ``r = 1``, all resolved alike.
 
-    From the contact zone, 1.1, outwards elements grow so slowly that the waves of a contact are still resolved where
-    they are as long as their distance from it.
+    Elements at the surface grow in proportion to the radius. From the contact zone, 1.1, outwards they grow so slowly
+    that the waves of a contact are still resolved where they are as long as their distance from it.
 
     Parameters
     ----------
@@ -79,33 +83,11 @@ def half_space_for_waves(
     elements = elements_checked("the contact radius", elements_per_radius, 1.0, 200.0)
     at_surface = elements * checked("refinement of the surface", finer, 1.0, 16.0)
     most = checked("growth of elements", growth, 0.1, WAVE_GROWTH)
-    return _under_contacts(at_surface, smallest, far_radius, most * min(1.0 / elements, OF_WAVE_GROWTH))
-
-
-def half_space_under_contacts(elements_per_radius: float, smallest: float, far_radius: float) -> MeshTri:
-    """Triangles of the same outline under contacts that end anywhere up to ``r = 1``, all resolved alike.
-
-    Elements at the surface grow in proportion to the radius, and into the body by 0.6 per unit distance.
-
-    Parameters
-    ----------
-    elements_per_radius : radius over element size at the surface, 1 to 200.
-    smallest : the smallest contact radius to resolve so, 1e-3 to 1.
-    far_radius : radius of the quarter disc, 2 to 1e6.
-
-    Raises
-    ------
-    MeshError for numbers outside these ranges.
-    """
-    elements = elements_checked("the contact radius", elements_per_radius, 1.0, 200.0)
-    return _under_contacts(elements, smallest, far_radius, INWARD_GROWTH)
-
-
-def _under_contacts(at_surface: float, smallest: float, far_radius: float, growth: float) -> MeshTri:
     low = checked("smallest contact over the largest", smallest, 1e-3, 1.0)
     far = checked("far_radius", far_radius, 2.0, 1e6)
     within = smaller(larger("x", repr(low)), repr(ZONE))
-    return _quarter(f"{within}/{at_surface!r}+{growth!r}*(Fabs(y)+{beyond('x', ZONE)})", ZONE, far)
+    inward = most * min(1.0 / elements, OF_WAVE_GROWTH)
+    return _quarter(f"{within}/{at_surface!r}+{inward!r}*(Fabs(y)+{beyond('x', ZONE)})", ZONE, far)
 
 
 def _quarter(size: str, node: float, far_radius: float) -> MeshTri:

@@ -20,6 +20,7 @@ from lumped.scene.scene import Scene
 Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.integer[Any]]  # degrees of freedom, nodes, rows: of whatever width they come
 Basis: TypeAlias = Any  # of scikit-fem, which ships no types
+Field: TypeAlias = Any  # in a form of scikit-fem: a function with its derivatives, or what is known of a place
 Matrix: TypeAlias = Any  # sparse, in any of scipy's formats, which share no class that has all they have
 LARGEST_NU = 0.4999  # elements of every order are tried so far by `fe-contact stability`
 

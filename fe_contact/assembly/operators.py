@@ -117,7 +117,7 @@ class WholeBody:
     solve: Solve
 
 
-def made(make: Callable[..., Any], *numbers: Any) -> Any:
+def made(make: Callable[..., Any], *numbers: object) -> Any:
     """The mesh that numbers make; raises BodyTooFine where it would be too large."""
     try:
         return make(*numbers)

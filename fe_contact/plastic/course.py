@@ -29,26 +29,29 @@ from lumped.shapes import Shape
 
 Told = TypeVar("Told")
 BEYOND = 1.2  # of the largest depth: up to there forces are found, so that it lies amid them
-KNOTS = 0.5  # between knots of a smooth force, in ln depth: two elements or more along the contact radius
+KNOTS = 1.0  # between knots of a smooth force, in ln depth: wider ones change it by 2e-4, narrower ones follow noise
 RIM_KNOTS = 0.25  # the same under a rim, where no edge moves
 FAINT, FIRM = 0.5, 0.9  # of the yield strength, mean elastic pressures: before them nothing yields, and hardly anything
 FEWEST = 6  # forces of a smooth curve at least
-SPARE = 1.15  # widest contact over the radius up to which undeformed surfaces overlap: plastic flow piles up
 STRIDE = 6.0  # over the settings' steps: of a step in depth, over the depth
-SMALLEST = 1.5e-3  # contact over the widest one: no mesh is finer
 SHALLOWEST = 1e-6  # depth of the first step over the largest: no mesh is finer
 FORGOTTEN = 0.3  # of the shallowest depth, the first step of what flows from the touch on: the next ones forget it
 BISECTIONS = 60  # work
-ELEMENTS = 9.5  # along the contact radius at the surface, at tolerance 1e-3, where a body begins to yield
-RIM_ELEMENTS = 2.0  # the same under a rim, which the mesh is refined to
-FEWEST_ELEMENTS, LEAST_STEPS = 8.0, 16  # to begin with (under a rim fewer)
+ELEMENTS = 8.0  # along the contact radius, at tolerance 1e-3
+RIM_ELEMENTS = 2.0  # the same under a rim, which the mesh is refined to, where a body begins to yield
+LEAST_STEPS = 16  # to begin with
 LEAST_ELEMENTS, LEAST_RIM_ELEMENTS = 4.0, 2.0  # that a user may choose: half as many still tell something
-MOST_ELEMENTS, MOST_STEPS = 32.0, 80  # to begin with
+MOST_ELEMENTS, MOST_STEPS = 32.0, 160  # to begin with
 ORDER = 3  # of the elements: they do not lock where flow keeps the volume
-STEPS = 18  # of a loading there, over six e-folds of the depth or so
+STEPS, RIM_STEPS = 22, 18  # of a loading over six e-folds of the depth or so, there and where a body begins to yield
 FOLLOWING = 0.4  # power of the tolerance that elements and steps follow
-FURTHER, FURTHEST = 0.35, 40.0  # power of the depth over that of first yield that they follow too, up to there
+FURTHER, FURTHEST = 0.35, 40.0  # power of the depth over that of first yield that steps follow too, up to there
 FEWEST_STEPS = 6  # of a run that tells anything
+MESH_ORDER, RIM_ORDER = 2.0, 1.0  # of forces: 2 to 3 from 2 to 6 elements where an edge is a node of a growing mesh
+STEP_ORDER = (
+    1.5  # of what is left once the square counts out; measured from 12 to 192 steps: a third of what is trusted
+)
+ONWARDS = 1.0 / 3.0  # of what half the steps change: their square counts out (Richardson)
 # Where an edge crosses elements, and flow turns under it, bars fall with the settings to 1.5 to 2.
 GROWTH = {
     "mesh": Growth(order=1.5, step=1.1, most=1.6, work=2.0),
@@ -58,10 +61,10 @@ GROWTH = {
 }
 DEFAULTS: Given = {
     "order": ORDER,
-    "penalty": 4000.0,
+    "penalty": 64000.0,
     "enforcement": "corrected",
     "scheme": "galerkin",
-    "far_radius": 20.0,
+    "far_radius": 40.0,
 }
 
 
@@ -187,8 +190,13 @@ class Course:
 
     @cached_property
     def unit(self) -> float:
-        """The widest contact to expect, m."""
-        return self.profile.fixed_radius or SPARE * overlapping(self.profile, BEYOND * self.deepest)
+        """The length, m, in which places of the loading are told: about the widest contact."""
+        return self.profile.fixed_radius or overlapping(self.profile, BEYOND * self.deepest)
+
+    @property
+    def mesh_order(self) -> float:
+        """With which forces are trusted to settle as elements get smaller."""
+        return RIM_ORDER if self.rim else MESH_ORDER
 
     @property
     def power(self) -> float:
@@ -197,11 +205,9 @@ class Course:
 
     def ground(self, numerics: Numerics, cut: bool = False) -> Ground:
         """The half-space meshed. Raises BodyTooFine."""
-        smallest = 1.0 if self.rim else 0.5 * overlapping(self.profile, self.shallow) / self.unit
         sizes = Sizes(
             elements=numerics.elements_per_contact,
             order=numerics.order,
-            smallest=min(max(smallest, SMALLEST), 1.0),
             far_radius=numerics.far_radius,
             rim=self.rim,
             cut=cut,
@@ -253,12 +259,16 @@ def _largest(holds: Callable[[float], bool], start: float, most: float = np.inf)
 
 
 def settings(given: Given, course: Course) -> Numerics:
-    """Settings of a body that yields: what the user left open. The further it yields, the finer."""
+    """Settings of a body that yields: what the user left open. The further it yields, the more steps, and the finer
+    the elements about a rim.
+    """
     tolerance = tolerance_of(given)
-    finer = (DEFAULT_TOLERANCE / tolerance) ** FOLLOWING * min(course.deepest / course.firm, FURTHEST) ** FURTHER
-    elements, fewest = (RIM_ELEMENTS, RIM_ELEMENTS) if course.rim else (ELEMENTS, FEWEST_ELEMENTS)
-    elements = min(max(elements * finer, fewest), MOST_ELEMENTS)
-    steps = max(4 * round(min(STEPS * finer, MOST_STEPS) / 4), LEAST_STEPS)
+    finer = (DEFAULT_TOLERANCE / tolerance) ** FOLLOWING
+    further = finer * min(course.deepest / course.firm, FURTHEST) ** FURTHER
+    fewest, wanted = (RIM_ELEMENTS, RIM_ELEMENTS * further) if course.rim else (ELEMENTS, ELEMENTS * finer)
+    elements = min(max(wanted, fewest), MOST_ELEMENTS)
+    steps = (RIM_STEPS if course.rim else STEPS) * further
+    steps = max(4 * round(min(steps, MOST_STEPS) / 4), LEAST_STEPS)
     chosen = {**DEFAULTS, "tolerance": tolerance, "elements_per_contact": elements, "steps": steps}
     return Numerics(**{**chosen, **given}, contact_radius=1.0, contact_time=1.0, peak_share=0.5)
 
@@ -339,62 +349,59 @@ class Contrast(NamedTuple, Generic[Told]):
 class Varied(NamedTuple, Generic[Told]):
     """What runs with different settings tell.
 
-    On a coarser mesh ``same`` has the settings' steps, ``finer`` twice as many, ``fewer`` half as many; as many as that
-    ``base`` on the finest mesh, and on the coarsest ``third``, ``softer`` with half the penalty, ``nearer`` with a mesh
-    that ends half as far away.
+    With half of the settings' steps on three meshes: ``base`` on the finest, ``middle``, ``coarse``. On the coarsest
+    also with all steps, ``same``, with twice as many, ``finer``, with half the penalty, ``softer``, and cut half as far
+    away, ``nearer``.
     """
 
     base: Told
+    middle: Told
+    coarse: Told
     same: Told
     finer: Told
-    fewer: Told
-    third: Told
     softer: Told
     nearer: Told
 
     @classmethod
     def of(cls, run: Callable[[Numerics, bool], Told], numerics: Numerics) -> Varied[Told]:
         """Of a ``run`` with settings, on a mesh that is cut or not."""
-        coarse = coarser(numerics)
-        few = coarse.varied(steps=max(coarse.steps // 2, FEWEST_STEPS))
-        third = few.varied(elements_per_contact=0.5 * numerics.elements_per_contact)
+        few = numerics.varied(steps=max(numerics.steps // 2, FEWEST_STEPS))
+        middle = few.varied(elements_per_contact=math.sqrt(0.5) * few.elements_per_contact)
+        coarse = few.varied(elements_per_contact=0.5 * few.elements_per_contact)
         return cls(
-            base=run(numerics.varied(steps=few.steps), False),
-            same=run(coarse, False),
-            finer=run(coarse.varied(steps=2 * coarse.steps), False),
-            fewer=run(few, False),
-            third=run(third, False),
-            softer=run(third.varied(penalty=0.5 * third.penalty), False),
-            nearer=run(third, True),
+            base=run(few, False),
+            middle=run(middle, False),
+            coarse=run(coarse, False),
+            same=run(coarse.varied(steps=numerics.steps), False),
+            finer=run(coarse.varied(steps=2 * numerics.steps), False),
+            softer=run(coarse.varied(penalty=0.5 * coarse.penalty), False),
+            nearer=run(coarse, True),
         )
 
     def mended(self, onwards: Callable[[Told, Told, Told, float], Told]) -> Told:
-        """The finest mesh with what the others know of the steps: their square counts out (Richardson).
+        """The finest mesh with what the coarsest knows of the steps: their square counts out (Richardson).
 
         ``onwards(one, fine, coarse, weight)``: one + weight (fine - coarse).
         """
-        return onwards(self.base, self._fine(onwards), self.fewer, 1.0)
+        return onwards(self.base, self._fine(onwards), self.coarse, 1.0)
 
     def _fine(self, onwards: Callable[[Told, Told, Told, float], Told]) -> Told:
-        return onwards(self.finer, self.finer, self.same, 1.0 / 3.0)
+        return onwards(self.finer, self.finer, self.same, ONWARDS)
 
-    def pairs(self, onwards: Callable[[Told, Told, Told, float], Told]) -> dict[str, tuple[Contrast[Told], ...]]:
+    def pairs(
+        self, onwards: Callable[[Told, Told, Told, float], Told], order: float
+    ) -> dict[str, tuple[Contrast[Told], ...]]:
         """By cause the pairs that tell its error together.
 
-        Of steps and mesh order one is trusted, where a contact's edge crosses elements that flow: of meshes as the mean
-        of what two pairs tell of the finest, for two of them may agree by chance.
+        Of meshes this ``order`` is trusted, as the mean of what two pairs tell of the finest, for two of them may agree
+        by chance; of what is left of the steps once their square counts out, order 1.5.
         """
-        coarse = onwards(self.same, self.same, self.fewer, 1.0 / 3.0)
-        ratio = math.sqrt(2.0)
+        fewer = onwards(self.same, self.same, self.coarse, ONWARDS)
+        ratio = math.sqrt(2.0) ** order
         half = 0.5 * SAFETY / (ratio - 1.0)
         return {
-            "mesh": (Contrast(self.base, self.fewer, half), Contrast(self.fewer, self.third, half / ratio)),
-            "penalty": (Contrast(self.third, self.softer, SAFETY),),
-            "time_step": (Contrast(self._fine(onwards), coarse, SAFETY),),
-            "far_field": (Contrast(self.third, self.nearer, SAFETY / 3.0),),
+            "mesh": (Contrast(self.base, self.middle, half), Contrast(self.middle, self.coarse, half / ratio)),
+            "penalty": (Contrast(self.coarse, self.softer, SAFETY),),
+            "time_step": (Contrast(self._fine(onwards), fewer, SAFETY / (2.0**STEP_ORDER - 1.0)),),
+            "far_field": (Contrast(self.coarse, self.nearer, SAFETY / 3.0),),
         }
-
-
-def coarser(numerics: Numerics) -> Numerics:
-    """The next coarser mesh."""
-    return replace(numerics, elements_per_contact=numerics.elements_per_contact / np.sqrt(2.0))

@@ -58,7 +58,7 @@ class PressedAgain:
     @property
     def dent(self) -> Dented:
         """The surface, as far as the body may yield."""
-        basis, unit = self.ground.basis, self.course.unit
+        basis, unit = self.ground.basis, self.course.unit * self.peak.scale
         nodes = self._nodes
         nodes = nodes[basis.doflocs[1, nodes] == 0.0]
         nodes = nodes[np.argsort(basis.doflocs[0, nodes])]
@@ -71,18 +71,18 @@ class PressedAgain:
 
     def fields(self, time: float) -> tuple[Fields, Array]:
         """At the largest force, which is at a ``time``, s; and the amount of plastic strain at the points (n,)."""
-        ground, peak, unit = self.ground, self.peak, self.course.unit
+        ground, peak, unit = self.ground, self.peak, self.course.unit * self.peak.scale
         basis, nodes = ground.basis, self._nodes
         gradient = ground.encounter.body.core.gradient(peak.displacement)
         stress = ground.yielding.flowed(gradient, *peak.state).stress[STRESS]
         *stresses, amount = _at_nodes(basis, ground.elements, np.concatenate([stress, peak.state[1][None]]))
         triangles = subdivided(basis).reshape(basis.nelems, -1, 3)[ground.elements].reshape(-1, 3)
         place = basis.doflocs[:, nodes].T
-        touching = (place[:, 1] == 0.0) & (place[:, 0] <= peak.radius)
+        touching = (place[:, 1] == 0.0) & (peak.scale * place[:, 0] <= peak.radius)
         found = Fields(
             time=time,
-            depth=unit * peak.depth,
-            contact_radius=unit * peak.radius,
+            depth=self.course.unit * peak.depth,
+            contact_radius=self.course.unit * peak.radius,
             points=unit * place,
             triangles=np.searchsorted(nodes, triangles),
             displacement=unit * peak.displacement.reshape(-1, 2)[nodes],

@@ -1,11 +1,12 @@
-"""The half-space that yields: one mesh that resolves every contact radius alike, its core plastic, the rest linear.
+"""The half-space that yields: one mesh in units of the contact radius, its core plastic, the rest linear.
 
-Lengths are in units of the widest contact, moduli of E*.
+Moduli are in units of E*. The mesh grows with the contact, so that every contact ends at its finest elements; under a
+rim it stays as it is.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -19,9 +20,10 @@ from fe_contact.assembly.operators import MOST_UNKNOWNS, element, made, moduli, 
 from fe_contact.assembly.surface import flat
 from fe_contact.bodies.pressing import held
 from fe_contact.errors import BodyTooFine
+from fe_contact.plastic.growing import Growing
 from fe_contact.solids.base import State
 from fe_contact.solids.bulk import Bulk, CoredBody
-from fe_contact.solids.contact import OnUndeformed, Skin
+from fe_contact.solids.contact import Obstacle, OnUndeformed, Overlap, Skin
 from fe_contact.solids.newton import Encounter
 from fe_contact.solids.plastic import Plastic
 from lumped.materials.plasticity import Yielding
@@ -30,38 +32,81 @@ from lumped.shapes import Shape
 if TYPE_CHECKING:
     from skfem import MeshTri
 
-CORE = 4.0  # widest contacts: up to there the material may yield
+CORE = 4.0  # contact radii: up to there the material may yield
 GUARD = 0.8  # of the core: if it yields beyond, the core is too small
 NEAR = 0.5  # of the far radius: where the mesh is cut to see what the far field changes
+AT_EDGE, GROWTH = 4.0, 2.0  # of the mesh: with 1 per unit of length forces differ by less than 2e-4
 
 
 @dataclass(frozen=True)
 class Sizes:
-    """Of a mesh: elements along every contact radius, their order, the smallest contact over the widest, far radius.
+    """Of a mesh: elements along the contact radius, their order, far radius.
 
-    ``rim``: whether all contacts end at radius 1; ``cut``: the same mesh without its outer half.
+    ``rim``: whether all contacts end at one rim; ``cut``: the same mesh without its outer half.
     """
 
     elements: float
     order: int
-    smallest: float
     far_radius: float
     rim: bool = False
     cut: bool = False
 
 
 @dataclass(frozen=True, eq=False)
+class Nearer:
+    """An obstacle that overlaps by ``more`` (facets, points) than it does."""
+
+    obstacle: Obstacle
+    more: Array
+
+    def overlap(self, place: Array, displacement: Array, depth: float) -> Overlap:
+        """See :class:`Obstacle`."""
+        found = self.obstacle.overlap(place, displacement, depth)
+        return found._replace(depth=found.depth + self.more)
+
+    def along(self, place: Array) -> Array:
+        """See :class:`Obstacle`."""
+        return self.obstacle.along(place)
+
+
+@dataclass(frozen=True, eq=False)
 class Ground:
-    """What a rigid ``profile`` is pressed into; ``unit``: the widest contact, m; ``yielding`` in units of E*;
-    ``elements`` (e,) of the ``basis``: those that may yield.
+    """What a rigid ``profile`` is pressed into, on a mesh of some scale; ``unit`` of these scales, m; ``yielding`` in
+    units of E*; ``elements`` (e,) of the ``basis``: those that may yield; ``growing``: how the mesh grows, None under
+    a rim.
     """
 
     encounter: Encounter
+    profile: Shape
+    unit: float
     yielding: Yielding
     outer: npt.NDArray[np.bool_]
-    rim: bool
+    growing: Growing | None
     basis: Basis
     elements: Indices
+
+    @property
+    def rim(self) -> bool:
+        """Whether all contacts end at radius 1."""
+        return self.growing is None
+
+    def meeting(self, scale: float, more: Array) -> Encounter:
+        """Of the mesh ``scale`` long, and a striker that overlaps it by ``more`` (facets, points)."""
+        return replace(self.encounter, obstacle=Nearer(OnUndeformed(self.profile, scale * self.unit), more))
+
+    def carried(self, state: State, growth: float) -> State:
+        """What the points remember of a mesh that has become ``growth`` times as large."""
+        return state if self.growing is None else self.growing.carried(state, growth)
+
+    def moved(self, displacement: Array, growth: float) -> Array:
+        """A displacement (2 N,), in units of the mesh, once that is ``growth`` times as large: to begin with."""
+        if growth == 1.0:
+            return displacement
+        before = displacement.reshape(-1, 2)
+        found = before / growth**2  # as far from a force
+        within = np.flatnonzero(max(growth, 1.0) * np.hypot(*self.basis.doflocs) < GUARD * CORE)
+        found[within] = self.basis.probes(growth * self.basis.doflocs[:, within]) @ before / growth
+        return np.asarray(found.ravel())
 
     @property
     def rest(self) -> State:
@@ -101,7 +146,16 @@ def ground_of(profile: Shape, unit: float, yielding: Yielding, poisson: float, s
     rest = at_rest(meshed.core.weight.shape)
     body = CoredBody.of(meshed.core, Plastic(yielding), meshed.stiffness, meshed.fixed, rest)
     encounter = Encounter.of(body, meshed.skin, OnUndeformed(profile, unit))
-    return Ground(encounter, yielding, meshed.outer, sizes.rim, meshed.basis, meshed.elements)
+    return Ground(
+        encounter=encounter,
+        profile=profile,
+        unit=unit,
+        yielding=yielding,
+        outer=meshed.outer,
+        growing=meshed.growing,
+        basis=meshed.basis,
+        elements=meshed.elements,
+    )
 
 
 def at_rest(shape: tuple[int, ...]) -> State:
@@ -112,13 +166,14 @@ def at_rest(shape: tuple[int, ...]) -> State:
 @dataclass(frozen=True, eq=False)
 class MeshedGround:
     """All of a body that is known before its strength: its core, whole stiffness for E* = 1, held degrees of freedom,
-    skin; which elements of the core are its outermost, and which of the basis are the core's.
+    skin; how the core grows; which of its elements are its outermost, and which of the basis are the core's.
     """
 
     core: Bulk
     stiffness: Matrix
     fixed: Indices
     skin: Skin
+    growing: Growing | None
     outer: npt.NDArray[np.bool_]
     basis: Basis
     elements: Indices
@@ -135,6 +190,7 @@ def _meshed(sizes: Sizes, poisson: float) -> MeshedGround:
         stiffness=system_matrix(basis, poisson),
         fixed=held(basis, along=("axis",), across=()),
         skin=Skin.of(flat(basis), sizes.order, 2 * basis.N),
+        growing=None if sizes.rim else Growing.of(basis, elements, sizes.order),
         outer=distance[elements] > GUARD * CORE,
         basis=basis,
         elements=elements,
@@ -147,7 +203,7 @@ def _mesh(sizes: Sizes) -> MeshTri:
     if sizes.rim:
         mesh = made(meshes.layer_under_rim, sizes.elements, far, far)
     else:
-        mesh = made(meshes.half_space_under_contacts, sizes.elements, sizes.smallest, far)
+        mesh = made(meshes.half_space, sizes.elements, far, AT_EDGE, GROWTH)
     if sizes.cut:
         middles = mesh.p[:, mesh.t].mean(axis=1)
         mesh = mesh.restrict(np.flatnonzero(np.hypot(middles[0], middles[1]) < NEAR * far))

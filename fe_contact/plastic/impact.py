@@ -52,7 +52,7 @@ SPRUNG = np.linspace(0.0, 1.0, 101)  # shares of what springs back, from parting
 DEGREE = 5  # of the polynomial through the forces of a release, to the power that makes them a line
 RELEASES, RELEASING = 6, 0.25  # steps of a release at least, and over those of a loading
 # Of the run that tells how deep an impact will go: where a body flows from the touch on, a soft penalty settles soon.
-PILOT: Given = {"elements_per_contact": 5.0, "steps": 16, "penalty": 500.0}
+PILOT: Given = {"elements_per_contact": 2.0, "steps": 16}
 PILOT_FIRST = 0.01  # of its depth, its first step: one element is as wide; the work up to there is 1e-4 of the whole
 MOST_PILOT = 600  # work: its iterations; 170 where a body begins to yield, 450 at a yield strength of E/27000
 SOFTEST = 0.75  # of the yield strength, on what overlaps: hardly a lower force while a body yields
@@ -225,14 +225,14 @@ def answered(loading: PlasticLoading, known: Answered, places: list[Station], po
     """What is ``known`` of a loading, and a release by its places."""
     course, presser = loading.course, loading.presser
     springs, roots, shrunk = _release(places, power)
-    scale, final = course.modulus * course.unit**3, places[-1]
+    final, unit = places[-1], course.modulus * course.unit**3
     return replace(
         known,
         springs=springs,
         roots=roots,
         shrunk=np.ones_like(shrunk) if course.rim else shrunk,
-        stored=scale * presser.ground.stored(final.displacement, final.state),
-        plastic=scale * presser.ground.worked(final.state),
+        stored=unit * final.scale**3 * presser.ground.stored(final.displacement, final.state),
+        plastic=unit * final.worked,
     )
 
 
@@ -318,7 +318,8 @@ class Striking:
         curve = curve_of(march, self.scene)
         self._check_end(curve.duration)
         changes = {
-            cause: tuple(runner.variation(pair) for pair in pairs) for cause, pairs in told.pairs(_onwards).items()
+            cause: tuple(runner.variation(pair) for pair in pairs)
+            for cause, pairs in told.pairs(_onwards, self.course.mesh_order).items()
         }
         work = TotalWork.of(works, runs.base.unknowns, sum(one.iterations for one in works), 0)
         return Budget(curve, march, changes, work, numerics)

@@ -88,7 +88,7 @@ class YieldingWay:
             pressed=loadings.base.pressed,
             budget={
                 cause: around(depth, np.sum([one.factor * np.abs(one.first - one.second) for one in pairs], axis=0))
-                for cause, pairs in told.pairs(_onwards).items()
+                for cause, pairs in told.pairs(_onwards, self.course.mesh_order).items()
             },
             numerics=numerics,
             work={

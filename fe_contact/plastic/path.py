@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -22,17 +22,17 @@ from fe_contact.errors import MemoryTooSmall
 from fe_contact.plastic.ground import Ground
 from fe_contact.progress import Counted, uncounted
 from fe_contact.solids.base import State
-from fe_contact.solids.contact import Obstacle, Overlap, Points
+from fe_contact.solids.contact import Points
 from fe_contact.solids.newton import Equilibrium, EquilibriumLost, balanced
 from lumped.errors import NotReached
 
-SETTLED = 1e-8  # of the energy, what the last iteration may change: it leaves the square of its share
+SETTLED = 1e-9  # of the energy, what the last iteration may change: it leaves the square of its share
 GUESSED = 0.3  # of the pressure: where the one given is further off it is given again
 GIVEN = 4  # times at most
 GAMMA = 1.0 - math.sqrt(0.5)  # share of a step that each stage takes
 HALVINGS = 4  # of a step that does not settle
 ELASTIC_RATIO = 1.5  # of successive depths where nothing yields
-WIDEST = 1.08  # contact radius that the fine mesh still holds
+MISFIT, FITTED = 0.01, 4  # of the mesh's scale by the contact radius: beyond, it is fitted again, so often at most
 RELEASED = 0.015  # of what springs back: the last depth of a release before the surfaces part
 FIRST_RELEASED = 0.02  # of the depth that would spring back under a flat end: the first step of a release
 
@@ -53,25 +53,11 @@ class PlasticFlowSlow(NotReached):
         super().__init__(f"plastic flow takes more than {most} iterations up to depth {depth:.3g} m; {cure}")
 
 
-@dataclass(frozen=True, eq=False)
-class Given:
-    """An obstacle that presses with a pressure over stiffness, ``more`` (facets, points), when it just touches."""
-
-    obstacle: Obstacle
-    more: Array
-
-    def overlap(self, place: Array, displacement: Array, depth: float) -> Overlap:
-        """See :class:`Obstacle`."""
-        found = self.obstacle.overlap(place, displacement, depth)
-        return found._replace(depth=found.depth + self.more)
-
-    def along(self, place: Array) -> Array:
-        """See :class:`Obstacle`."""
-        return self.obstacle.along(place)
-
-
 class Station(NamedTuple):
-    """A body pressed ``depth`` deep: displacement (2 N,), state, force, pressure (facets, points), contact radius."""
+    """A body pressed ``depth`` deep: force, contact radius, in units of the ground; on its mesh, ``scale`` long in
+    these units, displacement (2 N,) in units of the mesh, state, pressure (facets, points). ``worked``: plastic work so
+    far, in units of the ground.
+    """
 
     depth: float
     displacement: Array
@@ -79,6 +65,8 @@ class Station(NamedTuple):
     force: float
     pressure: Array
     radius: float
+    scale: float = 1.0
+    worked: float = 0.0
 
 
 class Counts(NamedTuple):
@@ -106,37 +94,35 @@ class Presser:
     counted: Counted = uncounted
     counts: Counts = field(default_factory=Counts)
 
-    def settled(self, state: State, depth: float, displacement: Array, pressure: Array, radius: float) -> Station:
+    def settled(
+        self, state: State, depth: float, displacement: Array, pressure: Array, radius: float, scale: float
+    ) -> Station:
         """Equilibrium at a depth after ``state``; displacement, pressure and radius are guesses.
 
         The penalty only mends the pressure given: where that is far off, it is given again. Raises EquilibriumLost.
         """
-        stiffness = self.penalty / radius
-        touching: Points = (self.ground.points < radius).reshape(pressure.shape)
+        stiffness = self.penalty * scale / radius
+        touching: Points = (self.ground.points < radius / scale).reshape(pressure.shape)
         for number in range(GIVEN):
             last = number == GIVEN - 1
-            found = self._balanced(state, depth, displacement, pressure, stiffness, touching)
+            encounter = self.ground.meeting(scale, pressure / stiffness)
+            found = balanced(encounter, displacement, depth / scale, stiffness, state, touching, SETTLED)
+            self._count(found, depth)
             touch = found.balance.touch
             wrong = np.vdot(touch.skin.weights, np.abs(touch.pressure - pressure)) > GUESSED * found.balance.force
             displacement, pressure, touching = found.balance.displacement, touch.pressure, touch.touching
             if not wrong or last:
                 break
-        reached = self._edge(found)
-        if reached > WIDEST or not self.ground.contained(found.balance.loaded.answer.state):
-            raise MemoryTooSmall(self.unit * reached)
-        return Station(depth, displacement, found.balance.loaded.answer.state, touch.force, pressure, reached)
+        after, reached = found.balance.loaded.answer.state, self._edge(found)
+        if not np.isfinite(reached) or not self.ground.contained(after):
+            raise MemoryTooSmall(self.unit * scale)
+        return Station(depth, displacement, after, touch.force * scale**2, pressure, reached * scale, scale)
 
-    def _balanced(
-        self, state: State, depth: float, start: Array, pressure: Array, stiffness: float, touching: Points
-    ) -> Equilibrium:
-        obstacle = Given(self.ground.encounter.obstacle, pressure / stiffness)
-        encounter = replace(self.ground.encounter, obstacle=obstacle)
-        found = balanced(encounter, start, depth, stiffness, state, touching, SETTLED)
+    def _count(self, found: Equilibrium, depth: float) -> None:
         self.counts += (1, found.iterations)
         self.counted(1.0)
         if self.most is not None and self.counts.iterations > self.most:
             raise PlasticFlowSlow(self.unit * depth, self.most)
-        return found
 
     def _edge(self, found: Equilibrium) -> float:
         """Where the pressure ends: between the last point that touches and the next, as the overlap changes sign."""
@@ -171,40 +157,63 @@ class Presser:
 
     def _stepped(self, before: Station, here: Station, depth: float) -> Station:
         """Two stages. Raises EquilibriumLost."""
-        stage = here.depth + GAMMA * (depth - here.depth)
+        stage, spread = here.depth + GAMMA * (depth - here.depth), self._spread_of(before, here)
         share = (stage - here.depth) / (here.depth - before.depth) if before is not here else 0.0
-        middle = self._stage(here.state, before, here, stage, share)
+        middle = self._stage(here.state, before, here, stage, (share, spread))
         on = (1.0 - GAMMA) / GAMMA
-        state = tuple(start + on * (flowed - start) for start, flowed in zip(here.state, middle.state, strict=True))
-        return self._stage(state, here, middle, depth, on)
+        began = self.ground.carried(here.state, middle.scale / here.scale)
+        state = tuple(start + on * (flowed - start) for start, flowed in zip(began, middle.state, strict=True))
+        return self._worked(here, self._stage(state, here, middle, depth, (on, spread)))
 
-    def _stage(self, state: State, before: Station, here: Station, depth: float, share: float) -> Station:
-        """From ``here`` to a depth after ``state``, guessed as a ``share`` of what happened since ``before``."""
-        radius = self.grown(here, depth)
-        start = here.displacement + share * (here.displacement - before.displacement)
-        return self.settled(state, depth, start, self.scaled(here, radius), radius)
+    def _worked(self, here: Station, there: Station) -> Station:
+        """``there`` with the work of the step from ``here``: a mesh that has grown tells no more what was done when it
+        was small.
+        """
+        ground, began = self.ground, self.ground.carried(here.state, there.scale / here.scale)
+        more = there.scale**3 * (ground.worked(there.state) - ground.worked(began))
+        return there._replace(worked=here.worked + more)
 
-    def grown(self, here: Station, depth: float) -> float:
-        """Contact radius to expect at a depth."""
-        if self.ground.rim:
-            return 1.0
-        return min(here.radius * float((depth / here.depth) ** self.spread), 1.0)
+    def _spread_of(self, before: Station, here: Station) -> float:
+        """The power of the depth that the contact radius grows with now."""
+        if before.radius == here.radius:
+            return self.spread
+        return math.log(here.radius / before.radius) / math.log(here.depth / before.depth)
 
-    def scaled(self, here: Station, radius: float, share: float = 1.0) -> Array:
-        """The pressure of a place on another radius, ``share`` of it."""
-        points = self.ground.points
-        found = np.interp(points * (here.radius / radius), points, here.pressure.ravel())
-        return (share * np.where(points < radius, found, 0.0)).reshape(here.pressure.shape)
+    def _stage(self, state: State, before: Station, here: Station, depth: float, guess: tuple[float, float]) -> Station:
+        """From ``here`` to a depth after ``state``; guessed: it goes on by a share of what happened since ``before``,
+        the contact radius as a power of the depth.
+        """
+        share, spread = guess
+        ground, radius = self.ground, here.radius * (depth / here.depth) ** spread
+        onwards = here.displacement - ground.moved(before.displacement, here.scale / before.scale)
+        pressure = np.maximum(here.pressure + share * (here.pressure - before.pressure), 0.0)
+        for _ in range(FITTED):
+            scale = 1.0 if ground.rim else radius
+            growth = scale / here.scale
+            start = ground.moved(here.displacement, growth) + share * onwards
+            found = self.settled(ground.carried(state, growth), depth, start, pressure, scale, scale)
+            radius = found.radius
+            if abs(radius / scale - 1.0) < MISFIT:
+                break
+        return found
 
     def first(self, depth: float, radius: float) -> Station:
         """From rest to a first depth at once, with a contact radius to expect. Raises PlasticFlowLost."""
         ground, encounter = self.ground, self.ground.encounter
         displacement, pressure = np.zeros(encounter.body.core.size), np.zeros(encounter.skin.weights.shape)
-        return self._projected(ground.rest, depth, displacement, pressure, min(radius, 1.0))
+        for _ in range(FITTED):
+            scale = radius
+            found = self._projected(ground.rest, depth, displacement, pressure, radius, scale)
+            displacement, pressure, radius = found.displacement, found.pressure, found.radius
+            if abs(radius / scale - 1.0) < MISFIT:
+                break
+        return found._replace(worked=found.scale**3 * ground.worked(found.state))
 
-    def _projected(self, state: State, depth: float, displacement: Array, pressure: Array, radius: float) -> Station:
+    def _projected(
+        self, state: State, depth: float, displacement: Array, pressure: Array, radius: float, scale: float
+    ) -> Station:
         try:
-            return self.settled(state, depth, displacement, pressure, radius)
+            return self.settled(state, depth, displacement, pressure, radius, scale)
         except EquilibriumLost:
             raise PlasticFlowLost(self.unit * depth) from None
 
@@ -230,8 +239,15 @@ class Presser:
             start = start + way * (here.displacement - before.displacement)
             share = max(1.0 + way * (1.0 - before.force / here.force), 0.05)
         radius = here.radius * (1.0 if self.ground.rim else share ** (1.0 / 3.0))
-        pressure = self.scaled(here, radius, share if self.ground.rim else share ** (1.0 / 3.0))
-        return self._projected(here.state, depth, start, pressure, radius)
+        pressure = _shrunk(self.ground.points, here, radius, share if self.ground.rim else share ** (1.0 / 3.0))
+        return self._worked(here, self._projected(here.state, depth, start, pressure, radius, here.scale))
+
+
+def _shrunk(points: Array, here: Station, radius: float, share: float) -> Array:
+    """A ``share`` of the pressure of a place, on a smaller contact radius; radii of ``points`` of the mesh (n,)."""
+    found = np.interp(points * (here.radius / radius), points, here.pressure.ravel())
+    within = points < radius / here.scale
+    return np.asarray((share * np.where(within, found, 0.0)).reshape(here.pressure.shape))
 
 
 def parting(before: Station, here: Station, power: float) -> float:

@@ -16,6 +16,7 @@ from fe_contact.solids.contact import Obstacle, Points, Skin, Touch
 from lumped.errors import NotReached
 
 HASTY = 8  # work: whole steps before giving them up
+ASTRAY = 2  # work: whole steps in a row that promise more than the one before, which lead nowhere
 MOST_ITERATIONS = 60  # work: a step that needs more is made in halves
 SETTLED = 1e-9  # of the energy: the step that changes it by no more is the last one
 ENOUGH = 1e-4  # share of what the slope promises that a step has to lessen the energy by
@@ -212,6 +213,7 @@ def _hastened(
     the tangent it spoils the next step (the mixed integration points of Magisano, Leonetti and Garcea 2017).
     """
     known: Callable[[Array], Array] | None = None
+    before, grown = np.inf, 0
     for iteration in range(1, HASTY + 1):
         step = None if known is None else known(-here.residual)
         if known is None or step is None or abs(here.residual @ step) > settled * abs(here.energy):
@@ -221,8 +223,12 @@ def _hastened(
         there = at(here.displacement + change)
         if not np.isfinite(there.energy):
             return None
-        if abs(here.residual @ step) <= settled * abs(here.energy):
+        promised = abs(float(here.residual @ step))
+        if promised <= settled * abs(here.energy):
             return _equilibrium(there, known, iteration)
+        before, grown = promised, grown + 1 if promised > before else 0
+        if grown == ASTRAY:
+            return None
         foreseen = here.loaded.foreseen(change)
         if not np.array_equal(here.touch.touching, there.touch.touching):
             known = None
