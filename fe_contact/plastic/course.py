@@ -265,7 +265,7 @@ def settings(given: Given, course: Course) -> Numerics:
     tolerance = tolerance_of(given)
     finer = (DEFAULT_TOLERANCE / tolerance) ** FOLLOWING
     further = finer * min(course.deepest / course.firm, FURTHEST) ** FURTHER
-    fewest, wanted = (RIM_ELEMENTS, RIM_ELEMENTS * further) if course.rim else (ELEMENTS, ELEMENTS * finer)
+    fewest, wanted = (RIM_ELEMENTS, RIM_ELEMENTS * further) if course.rim else (LEAST_ELEMENTS, ELEMENTS * finer)
     elements = min(max(wanted, fewest), MOST_ELEMENTS)
     steps = (RIM_STEPS if course.rim else STEPS) * further
     steps = max(4 * round(min(steps, MOST_STEPS) / 4), LEAST_STEPS)

@@ -53,13 +53,13 @@ class Growing:
         return cls(flow, rate, np.linalg.pinv(read), read)
 
     def carried(self, state: State, growth: float) -> State:
-        """What points remember, (..., elements, points), once the mesh is ``growth`` times as large."""
+        """What points remember, (..., elements, points), once the mesh is ``growth`` times as large, one or more."""
         strain, amount = state
         if growth == 1.0 or not amount.any():
             return state
         told = np.matmul(np.concatenate([strain, amount[None]]), self.fitted.T)
         values = np.moveaxis(told, 0, -1).reshape(self.flow.shape[0], -1)
-        parts = math.ceil(abs(math.log(growth)) * self.rate / PART)
+        parts = math.ceil(math.log(growth) * self.rate / PART)
         step = math.log(growth) / parts
         for _ in range(parts):
             term = values

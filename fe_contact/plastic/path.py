@@ -188,12 +188,12 @@ class Presser:
         onwards = here.displacement - ground.moved(before.displacement, here.scale / before.scale)
         pressure = np.maximum(here.pressure + share * (here.pressure - before.pressure), 0.0)
         for _ in range(FITTED):
-            scale = 1.0 if ground.rim else radius
+            scale = 1.0 if ground.rim else max(radius, here.scale)  # what has flowed in is not told again
             growth = scale / here.scale
             start = ground.moved(here.displacement, growth) + share * onwards
             found = self.settled(ground.carried(state, growth), depth, start, pressure, scale, scale)
             radius = found.radius
-            if abs(radius / scale - 1.0) < MISFIT:
+            if abs(radius / scale - 1.0) < MISFIT or growth == 1.0:
                 break
         return found
 
