@@ -48,11 +48,9 @@ FOLLOWING = 0.4  # power of the tolerance that elements and steps follow
 FURTHER, FURTHEST = 0.35, 40.0  # power of the depth over that of first yield that steps follow too, up to there
 FEWEST_STEPS = 6  # of a run that tells anything
 MESH_ORDER, RIM_ORDER = 2.0, 1.0  # of forces: 2 to 3 from 2 to 6 elements where an edge is a node of a growing mesh
-STEP_ORDER = (
-    1.5  # of what is left once the square counts out; measured from 12 to 192 steps: a third of what is trusted
-)
+STEP_ORDER = 1.5  # of what is left once the square counts out, a third of which was found from 12 to 192 steps
 ONWARDS = 1.0 / 3.0  # of what half the steps change: their square counts out (Richardson)
-# Where an edge crosses elements, and flow turns under it, bars fall with the settings to 1.5 to 2.
+# Where flow turns under an edge, bars fall with the settings to 1.5 to 2.
 GROWTH = {
     "mesh": Growth(order=1.5, step=1.1, most=1.6, work=2.0),
     "penalty": Growth(order=1.0, step=2.0, most=4.0, work=0.1),
@@ -308,7 +306,7 @@ class PlasticLoading:
         course = self.course
         depths = course.depths(self.numerics.steps, end) / course.unit
         if not self.ends:
-            radius = 0.7 * overlapping(course.profile, course.first) / course.unit
+            radius = overlapping(course.profile, course.first) / course.unit
             here = self.presser.first(float(depths[0]), 1.0 if course.rim else radius)
             self.ends = [here]
         for depth in depths[depths > self.ends[-1].depth * (1.0 + 1e-9)]:

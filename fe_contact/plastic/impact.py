@@ -50,11 +50,11 @@ ROWS = 400  # of each half of an impact: the line between two errs by 1e-5 of th
 GRID = 500  # depths at which a loading is told
 SPRUNG = np.linspace(0.0, 1.0, 101)  # shares of what springs back, from parting on
 DEGREE = 5  # of the polynomial through the forces of a release, to the power that makes them a line
-RELEASES, RELEASING = 6, 0.25  # steps of a release at least, and over those of a loading
+RELEASES, RELEASING = 12, 0.125  # steps of a release at least, and over those of a loading: edges cross elements
 # Of the run that tells how deep an impact will go: where a body flows from the touch on, a soft penalty settles soon.
-PILOT: Given = {"elements_per_contact": 2.0, "steps": 16}
+PILOT: Given = {"elements_per_contact": 2.0, "steps": 16, "penalty": 4000.0}
 PILOT_FIRST = 0.01  # of its depth, its first step: one element is as wide; the work up to there is 1e-4 of the whole
-MOST_PILOT = 600  # work: its iterations; 170 where a body begins to yield, 450 at a yield strength of E/27000
+MOST_PILOT = 1500  # work: its iterations; 150 where a body begins to yield, 520 where it flows from the touch on
 SOFTEST = 0.75  # of the yield strength, on what overlaps: hardly a lower force while a body yields
 
 

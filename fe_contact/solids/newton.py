@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,6 +22,9 @@ MOST_ITERATIONS = 60  # work: a step that needs more is made in halves
 SETTLED = 1e-9  # of the energy: the step that changes it by no more is the last one
 ENOUGH = 1e-4  # share of what the slope promises that a step has to lessen the energy by
 ROUNDING = 1e-14  # of the energy: a trial may be higher by so much
+BLUNT = 0.05  # work: a share of Newton's step that is shorter says that its tangent is no guide
+FALLING = ((False, False), (True, False), (True, True))  # models of a body: convex, at rest
+MODELS = (FALLING, FALLING, FALLING[2:])  # to begin with, after one blunt step and after two
 SHORTEST = 1e-4  # share of a Newton step below which the energy stands still
 
 
@@ -102,20 +106,27 @@ class Balance:
         forces[body.rim] += body.rest @ self.displacement[body.rim] + body.pull
         return forces[body.free]
 
-    def tangent(self, convex: bool, unstrained: bool = False, pulls: Array | None = None) -> Matrix:
+    def tangent(
+        self, convex: bool, unstrained: bool = False, pulls: Array | None = None, meets: Points | None = None
+    ) -> Matrix:
         """Sparse (free, free); ``convex``: without what the striker's bend takes; ``unstrained``: of a body at rest;
-        ``pulls`` (2, elements, points) in place of the body's own.
+        ``pulls`` (2, elements, points) in place of the body's own; ``meets``: points that count as touching too.
         """
         loaded = self._at_rest if unstrained else self.loaded if pulls is None else self.loaded.under(pulls)
-        blocks = [loaded.matrices(), self.touch.matrices(convex), self.encounter.body.rest[None]]
+        touch = self.touch if meets is None else replace(self.touch, touching=self.touch.touching | meets)
+        blocks = [loaded.matrices(), touch.matrices(convex), self.encounter.body.rest[None]]
         return self.encounter.pattern.matrix(blocks)
 
     def factors(
-        self, convex: bool = False, unstrained: bool = False, pulls: Array | None = None
+        self,
+        convex: bool = False,
+        unstrained: bool = False,
+        pulls: Array | None = None,
+        meets: Points | None = None,
     ) -> Callable[[Array], Array]:
         """Back-substitution for that. Raises EquilibriumLost where a point is to touch a striker that ends before."""
         with np.errstate(invalid="ignore"):
-            tangent = self.tangent(convex, unstrained, pulls)
+            tangent = self.tangent(convex, unstrained, pulls, meets)
         if not np.isfinite(tangent.data).all():
             raise EquilibriumLost(f"the contact is as wide as the striker at depth {self.depth:.3g}")
         return factorized(tangent, ordered=True)
@@ -237,13 +248,21 @@ def _hastened(
 
 
 def _descending(here: Balance, at: Callable[[Array], Balance], settled: float) -> Equilibrium:
-    """By steps that lessen the energy. Raises EquilibriumLost."""
+    """By steps that lessen the energy. Raises EquilibriumLost.
+
+    After a blunt one the next counts as touching what that one meets, after two it is of a body at rest, too.
+    """
+    blunt, meets = 0, None
     for iteration in range(1, MOST_ITERATIONS + 1):
-        solve, step = _step(here)
+        solve, step = _step(here, MODELS[min(blunt, 2)], meets)
         slope = float(here.residual @ step)
-        if -slope <= settled * abs(here.energy):
+        if not blunt and -slope <= settled * abs(here.energy):
             return _equilibrium(at(here.displacement + _whole(here, step)), solve, iteration)
-        here = _descended(here, step, slope, at)
+        found = _descended(here, step, slope, at)
+        if found.share == 0.0 and blunt >= 2:
+            raise EquilibriumLost("the energy has no descent")
+        here = found.balance
+        blunt, meets = (blunt + 1, found.meets) if found.share < BLUNT else (0, None)
     raise EquilibriumLost(f"no equilibrium in {MOST_ITERATIONS} iterations")
 
 
@@ -253,10 +272,12 @@ def _equilibrium(there: Balance, solve: Callable[[Array], Array], iterations: in
     return Equilibrium(there, rate, iterations)
 
 
-def _step(here: Balance) -> tuple[Callable[[Array], Array], Array]:
-    """Factors and Newton's step (free,); where the energy would climb by a convex model, then of a body at rest."""
-    for convex, unstrained in ((False, False), (True, False), (True, True)):
-        solve = here.factors(convex, unstrained)
+def _step(
+    here: Balance, models: tuple[tuple[bool, bool], ...], meets: Points | None
+) -> tuple[Callable[[Array], Array], Array]:
+    """Factors and Newton's step (free,) by the first of some models, convex or at rest, by which energy falls."""
+    for convex, unstrained in models:
+        solve = here.factors(convex, unstrained, meets=meets)
         step = solve(-here.residual)
         if here.residual @ step <= 0.0:
             return solve, step
@@ -270,12 +291,22 @@ def _whole(here: Balance, free: Array) -> Array:
     return found
 
 
-def _descended(here: Balance, step: Array, slope: float, at: Callable[[Array], Balance]) -> Balance:
+class Descent(NamedTuple):
+    """A ``balance`` at a ``share`` of a step, 0 for none; ``meets``: points that touch at the end of the whole step."""
+
+    balance: Balance
+    share: float
+    meets: Points
+
+
+def _descended(here: Balance, step: Array, slope: float, at: Callable[[Array], Balance]) -> Descent:
     """The end of the step, or the nearest place towards it of less energy."""
     whole, share = _whole(here, step), 1.0
-    while share > SHORTEST:
-        there = at(here.displacement + share * whole)
-        if there.energy <= here.energy + ENOUGH * share * slope + ROUNDING * abs(here.energy):
-            return there
+    there = at(here.displacement + whole)
+    meets = there.touch.touching
+    while not there.energy <= here.energy + ENOUGH * share * slope + ROUNDING * abs(here.energy):
         share *= 0.5
-    raise EquilibriumLost("the energy has no descent")
+        if share <= SHORTEST:
+            return Descent(here, 0.0, meets)
+        there = at(here.displacement + share * whole)
+    return Descent(there, share, meets)

@@ -396,9 +396,9 @@ def test_a_punch_yields_with_the_coarsest_settings_and_fewer_elements_are_refuse
 
 @pytest.mark.tenth
 def test_forces_lie_among_the_published_ones_and_where_the_ledger_says() -> None:
-    """Sphere on half-space: the published ones flatten spheres; mean pressure rises from 1.08 Y to 2.8 to 3.0 Y."""
+    """Sphere on half-space: the published ones flatten spheres, whose mean pressures differ by 4 %."""
     depth = np.array([1.5, 3.0, 6.0, 12.0, 24.0, 60.0])
-    found = pressed((depth * yield_depth(0.3)).tolist(), COARSE | {"steps": 16})
+    found = pressed((depth * yield_depth(0.3)).tolist(), {"tolerance": 0.01})
     share = found.force / (4.0 / 3.0 * modulus(0.3) * math.sqrt(RADIUS) * found.depth**1.5)
     for law in (published.jackson_green, published.kogut_etsion):
         assert share == pytest.approx([law(one) for one in depth], rel=0.1)
@@ -406,7 +406,7 @@ def test_forces_lie_among_the_published_ones_and_where_the_ledger_says() -> None
     assert lost == pytest.approx(estimate / (1.0 + estimate), rel=0.3, abs=5e-3)
     mean = found.force / (np.pi * found.contact_radius**2 * STRENGTH)
     assert np.all(np.diff(mean) > 0.0)
-    assert 2.7 < mean[-1] < 3.0
+    assert mean == pytest.approx([published.kogut_etsion_pressure(one) for one in depth], rel=0.04)
 
 
 @pytest.mark.tenth

@@ -36,3 +36,8 @@ def jackson_green(depth: float) -> float:
 def kogut_etsion(depth: float) -> float:
     """The same for 1 to 110, within a tenth: Kogut and Etsion 2002, doi 10.1115/1.1490373."""
     return (1.03 * depth**1.425 if depth <= 6.0 else 1.40 * depth**1.263) / depth**1.5
+
+
+def kogut_etsion_pressure(depth: float) -> float:
+    """Mean pressure over the yield strength, the same range: theirs too."""
+    return 1.19 * depth**0.289 if depth <= 6.0 else 1.61 * depth**0.117
