@@ -292,7 +292,7 @@ def _whole(here: Balance, free: Array) -> Array:
 
 
 class Descent(NamedTuple):
-    """A ``balance`` at a ``share`` of a step, 0 for none; ``meets``: points that touch at the end of the whole step."""
+    """A ``balance`` at a ``share`` of a step, 0 for none; ``meets``: points that touch a little further on."""
 
     balance: Balance
     share: float
@@ -302,11 +302,10 @@ class Descent(NamedTuple):
 def _descended(here: Balance, step: Array, slope: float, at: Callable[[Array], Balance]) -> Descent:
     """The end of the step, or the nearest place towards it of less energy."""
     whole, share = _whole(here, step), 1.0
-    there = at(here.displacement + whole)
-    meets = there.touch.touching
+    there = beyond = at(here.displacement + whole)
     while not there.energy <= here.energy + ENOUGH * share * slope + ROUNDING * abs(here.energy):
         share *= 0.5
         if share <= SHORTEST:
-            return Descent(here, 0.0, meets)
-        there = at(here.displacement + share * whole)
-    return Descent(there, share, meets)
+            return Descent(here, 0.0, there.touch.touching)
+        there, beyond = at(here.displacement + share * whole), there
+    return Descent(there, share, beyond.touch.touching)
