@@ -40,7 +40,8 @@ BISECTIONS = 60  # work
 ELEMENTS = 8.0  # along the contact radius, at tolerance 1e-3
 RIM_ELEMENTS = 2.0  # the same under a rim, which the mesh is refined to, where a body begins to yield
 LEAST_STEPS = 16  # to begin with
-LEAST_ELEMENTS, LEAST_RIM_ELEMENTS = 4.0, 2.0  # that a user may choose: half as many still tell something
+LEAST_ELEMENTS, LEAST_RIM_ELEMENTS = 4.0, 2.0  # that a user may choose
+COARSEST = 3.0  # elements of a mesh that tells something, where no rim is
 MOST_ELEMENTS, MOST_STEPS = 32.0, 160  # to begin with
 ORDER = 3  # of the elements: they do not lock where flow keeps the volume
 STEPS, RIM_STEPS = 22, 18  # of a loading over six e-folds of the depth or so, there and where a body begins to yield
@@ -191,10 +192,15 @@ class Course:
         """The length, m, in which places of the loading are told: about the widest contact."""
         return self.profile.fixed_radius or overlapping(self.profile, BEYOND * self.deepest)
 
-    @property
-    def mesh_order(self) -> float:
-        """With which forces are trusted to settle as elements get smaller."""
-        return RIM_ORDER if self.rim else MESH_ORDER
+    def coarsest(self, numerics: Numerics) -> float:
+        """Elements along the contact radius of the coarsest of three meshes."""
+        half = 0.5 * numerics.elements_per_contact
+        return half if self.rim else max(half, COARSEST)
+
+    def settling(self, numerics: Numerics) -> float:
+        """By how much errors are trusted to fall from one of these meshes to the next."""
+        finer = numerics.elements_per_contact / self.coarsest(numerics)
+        return float(finer ** (0.5 * (RIM_ORDER if self.rim else MESH_ORDER)))
 
     @property
     def power(self) -> float:
@@ -263,7 +269,7 @@ def settings(given: Given, course: Course) -> Numerics:
     tolerance = tolerance_of(given)
     finer = (DEFAULT_TOLERANCE / tolerance) ** FOLLOWING
     further = finer * min(course.deepest / course.firm, FURTHEST) ** FURTHER
-    fewest, wanted = (RIM_ELEMENTS, RIM_ELEMENTS * further) if course.rim else (LEAST_ELEMENTS, ELEMENTS * finer)
+    fewest, wanted = (RIM_ELEMENTS, RIM_ELEMENTS * further) if course.rim else (2.0 * COARSEST, ELEMENTS * finer)
     elements = min(max(wanted, fewest), MOST_ELEMENTS)
     steps = (RIM_STEPS if course.rim else STEPS) * further
     steps = max(4 * round(min(steps, MOST_STEPS) / 4), LEAST_STEPS)
@@ -361,11 +367,11 @@ class Varied(NamedTuple, Generic[Told]):
     nearer: Told
 
     @classmethod
-    def of(cls, run: Callable[[Numerics, bool], Told], numerics: Numerics) -> Varied[Told]:
-        """Of a ``run`` with settings, on a mesh that is cut or not."""
+    def of(cls, run: Callable[[Numerics, bool], Told], numerics: Numerics, coarsest: float) -> Varied[Told]:
+        """Of a ``run`` with settings, on a mesh that is cut or not; ``coarsest``: elements along its contact radius."""
         few = numerics.varied(steps=max(numerics.steps // 2, FEWEST_STEPS))
-        middle = few.varied(elements_per_contact=math.sqrt(0.5) * few.elements_per_contact)
-        coarse = few.varied(elements_per_contact=0.5 * few.elements_per_contact)
+        middle = few.varied(elements_per_contact=math.sqrt(coarsest * few.elements_per_contact))
+        coarse = few.varied(elements_per_contact=coarsest)
         return cls(
             base=run(few, False),
             middle=run(middle, False),
@@ -387,18 +393,17 @@ class Varied(NamedTuple, Generic[Told]):
         return onwards(self.finer, self.finer, self.same, ONWARDS)
 
     def pairs(
-        self, onwards: Callable[[Told, Told, Told, float], Told], order: float
+        self, onwards: Callable[[Told, Told, Told, float], Told], settling: float
     ) -> dict[str, tuple[Contrast[Told], ...]]:
         """By cause the pairs that tell its error together.
 
-        Of meshes this ``order`` is trusted, as the mean of what two pairs tell of the finest, for two of them may agree
-        by chance; of what is left of the steps once their square counts out, order 1.5.
+        From mesh to mesh errors fall by ``settling``: the mean of what two pairs tell of the finest, for two meshes may
+        agree by chance; of what is left of the steps once their square counts out, order 1.5 is trusted.
         """
         fewer = onwards(self.same, self.same, self.coarse, ONWARDS)
-        ratio = math.sqrt(2.0) ** order
-        half = 0.5 * SAFETY / (ratio - 1.0)
+        half = 0.5 * SAFETY / (settling - 1.0)
         return {
-            "mesh": (Contrast(self.base, self.middle, half), Contrast(self.middle, self.coarse, half / ratio)),
+            "mesh": (Contrast(self.base, self.middle, half), Contrast(self.middle, self.coarse, half / settling)),
             "penalty": (Contrast(self.coarse, self.softer, SAFETY),),
             "time_step": (Contrast(self._fine(onwards), fewer, SAFETY / (2.0**STEP_ORDER - 1.0)),),
             "far_field": (Contrast(self.coarse, self.nearer, SAFETY / 3.0),),

@@ -32,7 +32,7 @@ from lumped.shapes import Shape
 if TYPE_CHECKING:
     from skfem import MeshTri
 
-CORE = 4.0  # contact radii: up to there the material may yield
+CORE = 8.0  # contact radii: up to there the material may yield
 GUARD = 0.8  # of the core: if it yields beyond, the core is too small
 NEAR = 0.5  # of the far radius: where the mesh is cut to see what the far field changes
 AT_EDGE, GROWTH = 4.0, 2.0  # of the mesh: with 1 per unit of length forces differ by less than 2e-4

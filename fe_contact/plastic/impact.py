@@ -312,14 +312,14 @@ class Striking:
         """The contact and its bars. Raises NotReached."""
         wider = numerics.contact_radius / self.chosen.numerics.contact_radius
         runner = Runner(self.scene, self.course.outgrown(wider), self.progress)
-        runs = Varied.of(runner.run, numerics)
+        runs = Varied.of(runner.run, numerics, self.course.coarsest(numerics))
         told, works = Varied(*(run.answered for run in runs)), [run.work for run in runs]
         march = runner.motion(told.mended(_onwards)).march(runs.base.work)
         curve = curve_of(march, self.scene)
         self._check_end(curve.duration)
         changes = {
             cause: tuple(runner.variation(pair) for pair in pairs)
-            for cause, pairs in told.pairs(_onwards, self.course.mesh_order).items()
+            for cause, pairs in told.pairs(_onwards, self.course.settling(numerics)).items()
         }
         work = TotalWork.of(works, runs.base.unknowns, sum(one.iterations for one in works), 0)
         return Budget(curve, march, changes, work, numerics)

@@ -80,7 +80,8 @@ class YieldingWay:
     def certified(self, numerics: Numerics) -> ForcesFound:
         """Forces and what each setting changes of them. Raises NotReached where nothing settles."""
         depth = np.unique(np.concatenate([np.geomspace(self.asked.min(), self.asked.max(), DENSE), self.asked]))
-        loadings = Varied.of(partial(self._run, self.course.outgrown(numerics.contact_radius)), numerics)
+        run = partial(self._run, self.course.outgrown(numerics.contact_radius))
+        loadings = Varied.of(run, numerics, self.course.coarsest(numerics))
         told = Varied(*(loading.pressed.logarithm(depth) for loading in loadings))
         return ForcesFound(
             depth=depth,
@@ -88,7 +89,7 @@ class YieldingWay:
             pressed=loadings.base.pressed,
             budget={
                 cause: around(depth, np.sum([one.factor * np.abs(one.first - one.second) for one in pairs], axis=0))
-                for cause, pairs in told.pairs(_onwards, self.course.mesh_order).items()
+                for cause, pairs in told.pairs(_onwards, self.course.settling(numerics)).items()
             },
             numerics=numerics,
             work={

@@ -19,7 +19,7 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.errors import MemoryTooSmall
-from fe_contact.plastic.ground import Ground
+from fe_contact.plastic.ground import CORE, GUARD, Ground
 from fe_contact.progress import Counted, uncounted
 from fe_contact.solids.base import State
 from fe_contact.solids.contact import Points
@@ -43,6 +43,16 @@ class PlasticFlowLost(NotReached):
     def __init__(self, depth: float) -> None:
         cure = "cure: raise numerics.steps, lower numerics.penalty, or a larger target.material.hardening_modulus"
         super().__init__(f"plastic flow at depth {depth:.3g} m did not settle; {cure}")
+
+
+class PlasticZoneWide(NotReached):
+    """The body flows further from the contact than it may."""
+
+    def __init__(self, depth: float) -> None:
+        cure = "cure: a lower striker.velocity or mass, or a higher target.material.yield_strength"
+        super().__init__(
+            f"at depth {depth:.3g} m flow reaches {GUARD * CORE:.2g} contact radii, the most meshed; {cure}"
+        )
 
 
 class PlasticFlowSlow(NotReached):
@@ -114,8 +124,10 @@ class Presser:
             if not wrong or last:
                 break
         after, reached = found.balance.loaded.answer.state, self._edge(found)
-        if not np.isfinite(reached) or not self.ground.contained(after):
+        if not np.isfinite(reached):
             raise MemoryTooSmall(self.unit * scale)
+        if not self.ground.contained(after):
+            raise PlasticZoneWide(self.unit * depth)
         return Station(depth, displacement, after, touch.force * scale**2, pressure, reached * scale, scale)
 
     def _count(self, found: Equilibrium, depth: float) -> None:
@@ -227,8 +239,18 @@ class Presser:
             depth = min(ends + left * whole, found[-1].depth - 0.25 * whole / steps)
             if depth <= ends + 0.5 * RELEASED * whole:
                 break
-            found.append(self._released(found[-2], found[-1], depth))
+            found += self._let_go(found[-2], found[-1], depth)
         return found
+
+    def _let_go(self, before: Station, here: Station, depth: float, halvings: int = HALVINGS) -> list[Station]:
+        """Ends of a step back, or of its halves where it does not settle. Raises PlasticFlowLost."""
+        try:
+            return [self._released(before, here, depth)]
+        except PlasticFlowLost:
+            if halvings == 0:
+                raise
+        first = self._let_go(before, here, 0.5 * (here.depth + depth), halvings - 1)
+        return [*first, *self._let_go([here, *first][-2], first[-1], depth, halvings - 1)]
 
     def _released(self, before: Station, here: Station, depth: float) -> Station:
         """A step back, from a place reached by one from ``before``."""

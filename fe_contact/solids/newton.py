@@ -252,17 +252,18 @@ def _descending(here: Balance, at: Callable[[Array], Balance], settled: float) -
 
     After a blunt one the next counts as touching what that one meets, after two it is of a body at rest, too.
     """
-    blunt, meets = 0, None
+    blunt, none = 0, np.zeros_like(here.touch.touching)
+    meets = none
     for iteration in range(1, MOST_ITERATIONS + 1):
         solve, step = _step(here, MODELS[min(blunt, 2)], meets)
         slope = float(here.residual @ step)
         if not blunt and -slope <= settled * abs(here.energy):
             return _equilibrium(at(here.displacement + _whole(here, step)), solve, iteration)
         found = _descended(here, step, slope, at)
-        if found.share == 0.0 and blunt >= 2:
+        if found.share == 0.0 and blunt >= 2 and not np.any(found.meets & ~meets):
             raise EquilibriumLost("the energy has no descent")
         here = found.balance
-        blunt, meets = (blunt + 1, found.meets) if found.share < BLUNT else (0, None)
+        blunt, meets = (blunt + 1, meets | found.meets) if found.share < BLUNT else (0, none)
     raise EquilibriumLost(f"no equilibrium in {MOST_ITERATIONS} iterations")
 
 
@@ -273,7 +274,7 @@ def _equilibrium(there: Balance, solve: Callable[[Array], Array], iterations: in
 
 
 def _step(
-    here: Balance, models: tuple[tuple[bool, bool], ...], meets: Points | None
+    here: Balance, models: tuple[tuple[bool, bool], ...], meets: Points
 ) -> tuple[Callable[[Array], Array], Array]:
     """Factors and Newton's step (free,) by the first of some models, convex or at rest, by which energy falls."""
     for convex, unstrained in models:

@@ -294,7 +294,7 @@ def test_two_meshes_that_agree_by_chance_do_not_close_the_bar() -> None:
         return one + weight * (better - worse)
 
     def bar(fine: float, middle: float, coarse: float) -> float:
-        pairs = Varied(fine, middle, coarse, coarse, coarse, coarse, coarse).pairs(onwards, 1.0)["mesh"]
+        pairs = Varied(fine, middle, coarse, coarse, coarse, coarse, coarse).pairs(onwards, math.sqrt(2.0))["mesh"]
         return sum(pair.factor * abs(pair.first - pair.second) for pair in pairs)
 
     assert bar(1.0, 1.0, 1.1) > 0.1
@@ -313,10 +313,10 @@ def test_an_entry_covers_what_its_own_setting_leaves_and_the_square_of_the_steps
         off |= {"time_step": 1.0 / given.steps**1.5, "far_field": 4e-2 if cut else 1e-2}
         return np.array([1.0 + off[cause] + 1.0 / given.steps**2])
 
-    told = Varied.of(run, numerics)
+    told = Varied.of(run, numerics, 0.5 * numerics.elements_per_contact)
     error = float(abs(told.mended(_onwards) - 1.0)[0])
     bars = {of: sum(one.factor * float(abs(one.first - one.second)[0]) for one in pairs)
-            for of, pairs in told.pairs(_onwards, 1.0).items()}  # fmt: skip
+            for of, pairs in told.pairs(_onwards, math.sqrt(2.0)).items()}  # fmt: skip
     assert 0.0 < error <= bars.pop(cause) < 1.3 * error
     assert max(bars.values()) < 1e-9
 
@@ -633,7 +633,7 @@ def releases(power: float, steps: int, unit: float) -> tuple[Array, Array, float
     def at(before: Any, here: Any, depth: float) -> Any:
         return SimpleNamespace(depth=depth, force=stiff * max(depth - end, 0.0) ** power, radius=radius)
 
-    pressed: Any = SimpleNamespace(_released=at)
+    pressed: Any = SimpleNamespace(_released=at, _let_go=lambda *step: [at(*step)])
     found = Presser.released(pressed, at(None, None, unit), steps, power)
     return np.array([one.depth for one in found]), np.array([one.force for one in found]), end
 
