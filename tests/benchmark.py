@@ -50,7 +50,7 @@ RUNS = [
     ("polymer-layer", "1e-3", 15.0), ("rod-in-ring", "1e-3", 15.0), ("polymer-o-ring", "1e-3", 6.1),
     ("rubber-layer-bulk", "1e-3", 7.3), ("polymer-sphere-waves", "3e-3", 6.8), ("polymer-layer-waves", "3e-3", 6.6),
     ("steel-on-steel-waves", "3e-3", 7.3), ("polymer-sphere-finite", "1e-3", 30.0),
-    ("rod-in-ring-finite", "1e-3", 30.0), ("steel-ball-plastic", "2e-2", 60.0),
+    ("rod-in-ring-finite", "1e-3", 30.0), ("steel-ball-plastic", "5e-3", 60.0), ("steel-ball-plastic", "1e-3", 60.0),
 ]  # fmt: skip
 # The deepest of twenty slow indentations of every row of Table 1 and what lies between them, m.
 ROW_DEPTHS = {

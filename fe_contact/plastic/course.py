@@ -1,8 +1,8 @@
 """A loading of a half-space that yields, and its release: from a scene's bodies and settings to smooth curves.
 
-Where a contact ends in an element changes from step to step, and with it the force, by 1e-3 where the body flows
-freely: noise without a trend. So a force is a smooth function of the depth through those of all steps, some of which go
-deeper than asked; two meshes then differ by their trends, and a third of their noise.
+Where a contact ends beside its node changes from step to step, and with it the force, by 1e-4 where the body flows
+freely, and by 1e-3 under a rim: noise without a trend. So a force is a smooth function of the depth through those of
+all steps, some of which go deeper than asked; two meshes then differ by their trends, and a third of their noise.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ def check_given(given: Given, source: str, profile: Shape) -> None:
     least, (_, most) = LEAST_RIM_ELEMENTS if profile.fixed_radius else LEAST_ELEMENTS, RANGES["elements_per_contact"]
     if given.get("elements_per_contact", least) < least:
         reason = f"{given['elements_per_contact']:g}: with model.plasticity accepted from {least:g} to {most:g}"
-        found.append(Fault(source, "numerics.elements_per_contact", f"{reason}; the coarsest of three meshes has half"))
+        found.append(Fault(source, "numerics.elements_per_contact", f"{reason}; fewer show no edge"))
     if found:
         raise BadInput(found)
 

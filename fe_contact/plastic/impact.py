@@ -45,15 +45,15 @@ from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.result import IndentationLeft, LedgerEntry, Result, meets
 from lumped.scene.scene import Scene
 
-SECONDS = 12.0  # processor time of an impact to 1e-3, about
+SECONDS = 8.0  # processor time of an impact to 1e-3, about
 ROWS = 400  # of each half of an impact: the line between two errs by 1e-5 of the force
 GRID = 500  # depths at which a loading is told
 SPRUNG = np.linspace(0.0, 1.0, 101)  # shares of what springs back, from parting on
 DEGREE = 5  # of the polynomial through the forces of a release, to the power that makes them a line
 RELEASES, RELEASING = 12, 0.125  # steps of a release at least, and over those of a loading: edges cross elements
-# Of the run that tells how deep an impact will go: where a body flows from the touch on, a soft penalty settles soon.
+# Of the run that tells how deep an impact will go: a soft penalty settles soon where a body flows from the touch on.
 PILOT: Given = {"elements_per_contact": 2.0, "steps": 16, "penalty": 4000.0}
-PILOT_FIRST = 0.01  # of its depth, its first step: one element is as wide; the work up to there is 1e-4 of the whole
+PILOT_FIRST = 0.01  # of its depth, its first step: the work up to there is 1e-4 of the whole
 MOST_PILOT = 1500  # work: its iterations; 150 where a body begins to yield, 520 where it flows from the touch on
 SOFTEST = 0.75  # of the yield strength, on what overlaps: hardly a lower force while a body yields
 
