@@ -34,7 +34,7 @@ RIM_KNOTS = 0.25  # the same under a rim, where no edge moves
 FAINT, FIRM = 0.5, 0.9  # of the yield strength, mean elastic pressures: before them nothing yields, and hardly anything
 FEWEST = 6  # forces of a smooth curve at least
 STRIDE = 6.0  # over the settings' steps: of a step in depth, over the depth
-SHALLOWEST = 1e-6  # depth of the first step over the largest: no mesh is finer
+SHALLOWEST = 1e-6  # depth of the first step over the largest, at least: that shallow, yielding is forgotten soon
 FORGOTTEN = 0.3  # of the shallowest depth, the first step of what flows from the touch on: the next ones forget it
 BISECTIONS = 60  # work
 ELEMENTS = 8.0  # along the contact radius, at tolerance 1e-3
@@ -137,7 +137,7 @@ def smooth(x: Array, y: Array, spacing: float) -> Callable[[Array], Array]:
 @dataclass(frozen=True)
 class Course:
     """What is pressed into what, and how deep; m, Pa. ``first``, ``firm``: depths before which nothing yields, and
-    hardly anything; ``shallow``: from where on contacts are to be resolved.
+    hardly anything.
     """
 
     profile: Shape
@@ -147,7 +147,6 @@ class Course:
     hardening: float
     first: float
     firm: float
-    shallow: float
     deepest: float
 
     @classmethod
@@ -170,7 +169,6 @@ class Course:
             hardening=material.hardening_modulus or 0.0,
             first=first,
             firm=max(firm, first),
-            shallow=shallow,
             deepest=deepest,
         )
 

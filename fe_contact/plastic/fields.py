@@ -1,7 +1,7 @@
 """Fields of a half-space that yields at the largest force, and the indentation left: its finest mesh once more.
 
 Stress and plastic strain live at the points of the elements: in each they are read by the plane nearest to them, and a
-node takes the mean of its elements. The fields end where nothing may yield, four contact radii away.
+node takes the mean of its elements. The fields end where nothing may yield, eight contact radii away.
 """
 
 from __future__ import annotations
