@@ -50,9 +50,8 @@ class PlasticZoneWide(NotReached):
 
     def __init__(self, depth: float) -> None:
         cure = "cure: a lower striker.velocity or mass, or a higher target.material.yield_strength"
-        super().__init__(
-            f"at depth {depth:.3g} m flow reaches {GUARD * CORE:.2g} contact radii, the most meshed; {cure}"
-        )
+        reason = f"at depth {depth:.3g} m flow reaches {GUARD * CORE:.2g} contact radii, further than is meshed"
+        super().__init__(f"{reason}; {cure}")
 
 
 class PlasticFlowSlow(NotReached):
@@ -107,7 +106,7 @@ class Presser:
     def settled(
         self, state: State, depth: float, displacement: Array, pressure: Array, radius: float, scale: float
     ) -> Station:
-        """Equilibrium at a depth after ``state``; displacement, pressure and radius are guesses.
+        """Equilibrium at a depth after ``state`` on a mesh ``scale`` long; the other three are guesses.
 
         The penalty only mends the pressure given: where that is far off, it is given again. Raises EquilibriumLost.
         """

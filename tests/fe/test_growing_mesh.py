@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +10,7 @@ import pytest
 from fe_contact.assembly.forms import Array
 from fe_contact.plastic.course import Course, PlasticLoading, settings
 from fe_contact.plastic.ground import CORE, Ground
-from fe_contact.plastic.path import Presser, Station
+from fe_contact.plastic.path import PlasticZoneWide, Presser, Station
 from fe_contact.solids.base import State
 from lumped import Scene
 
@@ -19,12 +18,12 @@ YOUNG, STRENGTH, RADIUS = 2e11, 4e8, 0.005
 ORDERS = [1, 2, 3, 4]
 
 
-def course(deepest: float = 2e-6, **striker: Any) -> Course:
-    material = {"law": "elastic", "E": YOUNG, "nu": 0.3, "yield_strength": STRENGTH}
+def course(deepest: float = 2e-6, **material: float) -> Course:
+    material = {"E": YOUNG, "nu": 0.3, "yield_strength": STRENGTH} | material
     scene = Scene.from_dict(
         {
-            "striker": {"shape": "sphere", "radius": RADIUS, "mass": 4e-3, "velocity": 0.1} | striker,
-            "target": {"shape": "half_space", "material": material},
+            "striker": {"shape": "sphere", "radius": RADIUS, "mass": 4e-3, "velocity": 0.1},
+            "target": {"shape": "half_space", "material": {"law": "elastic"} | material},
             "model": {"plasticity": True},
         }
     )
@@ -147,3 +146,13 @@ def test_a_mesh_that_stays_tells_the_same_forces() -> None:
     grown, stayed = forces(4.0, Presser), forces(10.0, Staying)
     assert grown.max() < 0.82
     assert grown == pytest.approx(stayed, rel=4e-3)
+
+
+def test_flow_that_reaches_beyond_what_may_yield_is_named() -> None:
+    """So soft, and so much harder where it flows, that it flows far around."""
+    known = course(2e-6, yield_strength=3e6, hardening_modulus=0.05 * YOUNG)
+    loading = PlasticLoading.of(known, settings({"elements_per_contact": 4.0, "steps": 16}, known))
+    with pytest.raises(
+        PlasticZoneWide, match=r"flow reaches 6\.4 contact radii, further than is meshed; cure: a lower"
+    ):
+        loading.to(known.deepest)
