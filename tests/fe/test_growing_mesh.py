@@ -148,6 +148,7 @@ def test_a_mesh_that_stays_tells_the_same_forces() -> None:
     assert grown == pytest.approx(stayed, rel=4e-3)
 
 
+@pytest.mark.tenth
 def test_flow_that_reaches_beyond_what_may_yield_is_named() -> None:
     """So soft, and so much harder where it flows, that it flows far around."""
     known = course(2e-6, yield_strength=3e6, hardening_modulus=0.05 * YOUNG)
