@@ -204,7 +204,7 @@ def washer_of(random: np.random.Generator) -> tuple[object, ...]:
 
 ELEMENTS, SHARE, FINER = (1, 200), (1e-6, 1), (1, 16)
 RANDOM: dict[str, Callable[[np.random.Generator], tuple[object, ...]]] = {
-    "half_space": lambda random: powers(random, (0.25, 64), (2, 1e6)),
+    "half_space": lambda random: powers(random, (0.25, 64), (2, 1e6), (1, 100), (0.1, 3)),
     "half_space_for_waves": lambda random: powers(random, ELEMENTS, (1e-3, 1), (2, 1e6), FINER, (0.1, 3)),
     "layer": lambda random: powers(random, ELEMENTS, SHARE, (1e-3, 1e6), (1e-3, 1e8)),
     "layer_for_waves": lambda random: powers(random, ELEMENTS, SHARE, (1e-3, 1e6), (1e-3, 1e8), FINER),
