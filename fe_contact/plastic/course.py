@@ -48,8 +48,7 @@ STEPS, RIM_STEPS = 22, 18  # of a loading over six e-folds of the depth or so, t
 FOLLOWING = 0.4  # power of the tolerance that elements and steps follow
 FURTHER, FURTHEST = 0.35, 40.0  # power of the depth over that of first yield that steps follow too, up to there
 FEWEST_STEPS = 6  # of a run that tells anything
-MESH_ORDER, RIM_ORDER = 2.0, 1.0  # of forces: 2 to 3 from 2 to 6 elements where an edge is a node of a growing mesh
-STEP_ORDER = 1.5  # of what is left once the square counts out, a third of which was found from 12 to 192 steps
+MESH_ORDER, RIM_ORDER = 1.5, 1.0  # of forces: 2 to 3 where an edge is a node of a growing mesh, but for noise
 ONWARDS = 1.0 / 3.0  # of what half the steps change: their square counts out (Richardson)
 # Where flow turns under an edge, bars fall with the settings to 1.5 to 2.
 GROWTH = {
@@ -396,13 +395,13 @@ class Varied(NamedTuple, Generic[Told]):
         """By cause the pairs that tell its error together.
 
         From mesh to mesh errors fall by ``settling``: the mean of what two pairs tell of the finest, for two meshes may
-        agree by chance; of what is left of the steps once their square counts out, order 1.5 is trusted.
+        agree by chance; of what is left of the steps once their square counts out, order one is trusted.
         """
         fewer = onwards(self.same, self.same, self.coarse, ONWARDS)
         half = 0.5 * SAFETY / (settling - 1.0)
         return {
             "mesh": (Contrast(self.base, self.middle, half), Contrast(self.middle, self.coarse, half / settling)),
             "penalty": (Contrast(self.coarse, self.softer, SAFETY),),
-            "time_step": (Contrast(self._fine(onwards), fewer, SAFETY / (2.0**STEP_ORDER - 1.0)),),
+            "time_step": (Contrast(self._fine(onwards), fewer, SAFETY),),
             "far_field": (Contrast(self.coarse, self.nearer, SAFETY / 3.0),),
         }
