@@ -104,7 +104,8 @@ class Ground:
             return displacement
         before = displacement.reshape(-1, 2)
         found = before / growth**2  # as far from a force
-        within = np.flatnonzero(max(growth, 1.0) * np.hypot(*self.basis.doflocs) < GUARD * CORE)
+        distance = np.hypot(*self.basis.doflocs)
+        within = np.flatnonzero(growth * distance < min(GUARD * CORE, NEAR * float(distance.max())))
         found[within] = self.basis.probes(growth * self.basis.doflocs[:, within]) @ before / growth
         return np.asarray(found.ravel())
 

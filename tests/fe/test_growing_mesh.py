@@ -128,6 +128,13 @@ class Staying(Presser):
         return self.settled(self.ground.rest, depth, displacement, pressure, radius, 1.0)
 
 
+def test_a_displacement_is_told_on_a_body_that_ends_nearer_than_it_may_yield() -> None:
+    known = course()
+    body = known.ground(settings({"elements_per_contact": 4.0, "far_radius": 5.0}, known), cut=True)
+    assert np.hypot(*body.basis.doflocs).max() < CORE
+    assert body.moved(np.zeros(2 * body.basis.N), 1.3) == pytest.approx(0.0)
+
+
 def forces(elements: float, presser: type[Presser]) -> Array:
     """At the deeper half of the depths, over Hertz'."""
     known = course()
