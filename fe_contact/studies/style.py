@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -102,7 +102,7 @@ def write_curves(figure: Figure, where: Path, name: str) -> None:
     rows = list[tuple[object, ...]]()
     for letter, axes in zip(ascii_lowercase, figure.axes, strict=False):
         panel = f"{letter} {axes.get_title('left').partition('$  ')[2]}".strip()
-        meanings = _shared(figure, axes, "xlabel"), _shared(figure, axes, "ylabel")
+        meanings = [_shared(figure, axes, of) for of in (Axes.get_xlabel, Axes.get_ylabel)]
         for line in axes.lines:
             curve = str(line.get_label())
             if not curve.startswith(UNNAMED):
@@ -111,10 +111,9 @@ def write_curves(figure: Figure, where: Path, name: str) -> None:
     write_csv(where / f"{name}.csv", ("panel", "curve", "x_is", "y_is", "x", "y"), rows)
 
 
-def _shared(figure: Figure, axes: Axes, label: str) -> str:
+def _shared(figure: Figure, axes: Axes, label: Callable[[Axes], str]) -> str:
     """What an axis says, or where it leaves that to its neighbours, they."""
-    said = [one for panel in (axes, *figure.axes) if (one := str(panel.properties()[label]))]
-    return said[0]
+    return next(filter(None, map(label, (axes, *figure.axes))))
 
 
 def prefixed(largest: float, unit: str) -> tuple[float, str]:

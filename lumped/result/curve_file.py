@@ -27,6 +27,7 @@ from lumped.schema.files import content
 
 SPACES = " "  # one or more
 SEPARATORS = ("\t", ";", ",", SPACES)  # the first that tells a time from a force
+BLANK = ' \t,;"#'  # what a line without a cell consists of
 PREAMBLE = 40  # work: lines in which a header is looked for
 WORD = re.compile(r"[^\W_]+")
 ACCELERATION = re.compile(r"\b(acc|acceleration|beschleunigung)(?![^\W_])|\ba *[\[(/_] *(g|m/s)", re.IGNORECASE)
@@ -241,12 +242,13 @@ def _number(cell: str) -> float:
 
 def _numbers(source: str, lines: Sequence[str], header: CurveHeader) -> tuple[Array, Array, bool]:
     """Times, s, forces, N, and whether their commas are decimal. Raises BadInput."""
-    rows = (row for row in _rows(lines[header.lines :], header.separator) if any(map(str.strip, row)))
+    below = lines[header.lines :]
+    if sum(bool(line.strip(BLANK)) for line in below) > MOST_ROWS:
+        told = f"more than {MOST_ROWS} rows; accepted: fewer, as every tenth"
+        raise BadInput(Fault(source, f"{header.time.header},{header.force.header}", told))
+    rows = (row for row in _rows(below, header.separator) if any(map(str.strip, row)))
     columns, missing, commas = (array("d"), array("d")), list[int](), False
     for number, row in enumerate(rows, start=1):
-        if number > MOST_ROWS:
-            told = f"more than {MOST_ROWS} rows; accepted: fewer, as every tenth"
-            raise BadInput(Fault(source, f"{header.time.header},{header.force.header}", told))
         if header.separator == "," and number == 1 and len(row) == 2 * header.columns:
             reason = "commas separate the columns and the decimals too; cure: export with semicolons or decimal points"
             raise BadInput(Fault(source, f"row {number}", reason))
