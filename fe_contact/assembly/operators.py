@@ -108,13 +108,14 @@ class SurfaceOperator:
 class WholeBody:
     """A condensed body with its inside: the ``operator`` of its surface and the scalar scikit-fem ``basis``.
 
-    ``solve`` maps nodal forces (n,) on the zone to the displacement of the whole mesh (2 N,), factorising anew unless
-    asked to keep its factors.
+    ``solve`` maps nodal forces (n,) on the zone to the displacement of the whole mesh (2 N,), factorising anew;
+    ``work`` (n, n) that unit forces on the zone do, by the stiffness that was asked for.
     """
 
     operator: SurfaceOperator
     basis: Basis
     solve: Solve
+    work: Array | None
 
 
 def made(make: Callable[..., Any], *numbers: object) -> Any:
@@ -166,7 +167,7 @@ def condensed(
     surface: Surface,
     watch: Matrix = None,
     floating: Floating | None = None,
-    factors: bool = False,
+    worked: Matrix = None,
 ) -> WholeBody:
     """Factorise the stiffness of a body once and condense it to its contact zone.
 
@@ -179,7 +180,7 @@ def condensed(
     surface : where contact may happen, in units of the mesh.
     watch : weights of the displacement of the place from which depth is measured, (1, 2 N); None: it is at rest.
     floating : of a body whose inertia alone balances the load; ``fixed`` then holds it at one point too.
-    factors : whether to keep them.
+    worked : stiffness, sparse (2 N, 2 N), whose work on the displacements by unit forces is wanted.
     """
     order = basis.elem.maxdeg
     points, weights, trace = surface.quadrature(order)
@@ -187,8 +188,7 @@ def condensed(
     normal = _normals(surface, matrix.shape[0])
     free = np.setdiff1d(np.arange(matrix.shape[0]), fixed)
     interior = Interior(matrix[free][:, free], free, normal[:, :loaded], floating)
-    displacement = interior.factorised()
-    response, watched = _influence(displacement, normal, watch, loaded)
+    response, watched, work = _influence(interior.factorised(), normal, watch, loaded, worked)
     compliance = response[:loaded]
     condensed = np.linalg.inv((compliance + compliance.T) / 2)
     operator = SurfaceOperator(
@@ -205,16 +205,24 @@ def condensed(
         watched=watched,
         degrees_of_freedom=2 * int(basis.N),
     )
-    return WholeBody(operator, basis, displacement if factors else interior)
+    return WholeBody(operator, basis, interior, work)
 
 
-def _influence(displacement: Solve, normal: Matrix, watch: Matrix, loaded: int) -> tuple[Array, Array | None]:
-    """Inward displacement of the surface nodes, (n_s, loaded), and of what is watched, (loaded,), under unit forces."""
+def _influence(
+    displacement: Solve, normal: Matrix, watch: Matrix, loaded: int, worked: Matrix
+) -> tuple[Array, Array | None, Array | None]:
+    """Inward displacement of the surface nodes, (n_s, loaded), and of what is watched, (loaded,), under unit forces;
+    work of a stiffness, (loaded, loaded).
+    """
     seen = -normal.T if watch is None else sparse.vstack([-normal.T, watch])
-    parts = np.array_split(np.eye(loaded), -(-loaded // SOLVED_AT_ONCE), axis=1)
-    answers = np.hstack([seen @ displacement(part) for part in parts])
-    surface = normal.shape[1]
-    return answers[:surface], None if watch is None else answers[surface]
+    parts, answers = list[Array](), list[Array]()
+    for part in np.array_split(np.eye(loaded), -(-loaded // SOLVED_AT_ONCE), axis=1):
+        moved = displacement(part)
+        answers.append(seen @ moved)
+        parts += [moved] if worked is not None else []
+    known, surface = np.hstack(answers), normal.shape[1]
+    work = np.hstack(parts).T @ np.hstack([worked @ part for part in parts]) if parts else None
+    return known[:surface], None if watch is None else known[surface], work
 
 
 def _normals(surface: Surface, size: int) -> sparse.csc_matrix:
@@ -258,10 +266,10 @@ class ElasticBody:
     surface: Surface
     floating: Floating | None = None
 
-    def condensed(self, poisson: float, factors: bool = False) -> WholeBody:
+    def condensed(self, poisson: float, worked: Matrix = None) -> WholeBody:
         """With this Poisson's ratio, for E* = 1; see :func:`condensed`."""
         matrix = self.stiffness(*moduli(poisson)).tocsc()
-        return condensed(self.basis, matrix, self.fixed, poisson, self.surface, floating=self.floating, factors=factors)
+        return condensed(self.basis, matrix, self.fixed, poisson, self.surface, floating=self.floating, worked=worked)
 
 
 @dataclass(frozen=True, eq=False)

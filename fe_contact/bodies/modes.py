@@ -23,7 +23,7 @@ from scipy.linalg import eigh
 from fe_contact.assembly.cache import Recipe, cached
 from fe_contact.assembly.disk_cache import on_disk
 from fe_contact.assembly.forms import Array
-from fe_contact.assembly.operators import ElasticBody, SurfaceOperator, WholeBody, moduli
+from fe_contact.assembly.operators import ElasticBody, SurfaceOperator, moduli
 from fe_contact.errors import RatioNotKnown
 
 FEWEST, PER_E_FOLD = 3, 0.5  # ratios, at least and for every factor e of the interval: errors of some 1e-7
@@ -97,11 +97,12 @@ class Modes:
 def modes(body: Recipe[ElasticBody], lowest: float, highest: float) -> Modes:
     """Of a body whose ratio of shear to bulk modulus, G/K > 0, stays within an interval."""
     elastic = body.follow()
-    bodies = [elastic.condensed(poisson(ratio), factors=True) for ratio in _ratios(lowest, highest)]
-    operators = [one.operator for one in bodies]
+    sheared = elastic.stiffness(0.0, 1.0).tocsr()
+    bodies = (elastic.condensed(poisson(ratio), sheared) for ratio in _ratios(lowest, highest))
+    operators, works = zip(*((one.operator, one.work) for one in bodies), strict=True)
     middle = operators[len(operators) // 2]
     bulk, shear = moduli(middle.poisson)
-    volume_work, shear_work = _projected(elastic, bodies)
+    volume_work, shear_work = _projected(operators, works)
     free = _independent(bulk * volume_work + shear * shear_work)
     share, turned = eigh(free.T @ (shear * shear_work) @ free)
     share = np.clip(share, 0.0, 1.0)  # of the stiffness at the middle ratio
@@ -124,16 +125,16 @@ def _ratios(lowest: float, highest: float) -> Array:
     return np.asarray(np.exp(ends.mean() + half * places))
 
 
-def _projected(body: ElasticBody, bodies: Sequence[WholeBody]) -> tuple[Array, Array]:
-    """Work on one another, of unit bulk and of unit shear modulus, of the motions under unit nodal forces."""
-    shear_stiffness = body.stiffness(0.0, 1.0).tocsr()
-    operators = [one.operator for one in bodies]
+def _projected(operators: Sequence[SurfaceOperator], works: Sequence[Array | None]) -> tuple[Array, Array]:
+    """Work on one another, of unit bulk and of unit shear modulus, of the motions under unit nodal forces; ``works``:
+    that of unit shear modulus on themselves.
+    """
     n, count = len(operators[0].stiffness), len(operators)
     volume, shear = (np.empty((count, n, count, n)) for _ in range(2))
-    for i, first in enumerate(operators):
+    for i, (first, work) in enumerate(zip(operators, works, strict=True)):
         bulk_i, shear_i = moduli(first.poisson)
-        moved = bodies[i].solve(np.eye(n))
-        shear[i, :, i] = _symmetric(moved.T @ (shear_stiffness @ moved))
+        assert work is not None  # it was asked for
+        shear[i, :, i] = _symmetric(work)
         volume[i, :, i] = (_compliance(first) - shear_i * shear[i, :, i]) / bulk_i
         for j, second in enumerate(operators[:i]):
             bulk_j, shear_j = moduli(second.poisson)
