@@ -51,8 +51,8 @@ class Modes:
 
     @property
     def solves(self) -> int:
-        """Two a node of the contact zone and ratio: for the compliance, and for the motion of the whole."""
-        return 2 * self.ratios * len(self.operator.stiffness)
+        """One a node of the contact zone and ratio."""
+        return self.ratios * len(self.operator.stiffness)
 
     def stiffer(self, share: float) -> Modes:
         """Of a body so many times as stiff."""
