@@ -96,6 +96,7 @@ def impact(tmp_path_factory: pytest.TempPathFactory) -> RingStruck:
     return _struck(CASES["paper-ring-10mm"], 0.01, tmp_path_factory.mktemp("impact"))
 
 
+@pytest.mark.tenth
 def test_the_impacts_verdict_is_what_the_exact_ring_says(impact: RingStruck) -> None:
     """Ting on the annulus, without an element: how far (30)-(32) are off is the same within the bars."""
     scene = impact.found.scene
@@ -108,12 +109,14 @@ def test_the_impacts_verdict_is_what_the_exact_ring_says(impact: RingStruck) -> 
     assert impact.deviation("duration")[0] < -0.1  # far too stiff for a touch that has just begun
 
 
+@pytest.mark.tenth
 def test_the_bulk_modulus_matters_more_than_the_bars_and_less_than_the_ledger_says(impact: RingStruck) -> None:
     (told,) = [one for one in impact.found.model_ledger if one.effect == "constant nu against constant bulk modulus"]
     change, bar = impact.of_bulk("peak_force")
     assert bar < abs(change) < 1.05 * (told.estimate or 0.0)
 
 
+@pytest.mark.tenth
 def test_an_impact_is_written(impact: RingStruck, curves: dict[str, RingCurve], tmp_path: Path) -> None:
     (one,) = write_rings(tuple(curves.values()), tmp_path, [impact])["impacts"]
     with (tmp_path / "ring_impacts.csv").open(encoding="utf-8") as file:

@@ -379,6 +379,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     return (folder / "table.csv").read_bytes()
 
 
+@pytest.mark.tenth
 def test_a_killed_sweep_resumes_byte_by_byte(tmp_path: Path, whole: bytes, campaign_size: Callable[..., int]) -> None:
     """By a signal some time after some batches; no process stays, and no row that was kept is asked for again."""
     rng = np.random.default_rng(5)

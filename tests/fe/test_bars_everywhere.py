@@ -180,6 +180,7 @@ def compared(found: Result, exact: Result) -> tuple[dict[str, float], dict[str, 
     return errors | {"band": float(missed[worst])}, bars | {"band": float(band[worst])}
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("kind", SLOW)
 def test_no_bar_is_too_small_and_nearly_all_converge(
     kind: str, campaign_size: Callable[[int], int], capsys: pytest.CaptureFixture[str]

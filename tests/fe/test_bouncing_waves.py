@@ -107,6 +107,7 @@ def steel() -> tuple[Scene, WaveRun]:
     return scene, followed(scene)
 
 
+@pytest.mark.tenth
 def test_after_a_long_flight_a_contact_is_a_first_one_at_its_speed(steel: tuple[Scene, WaveRun]) -> None:
     scene, bounces = steel
     first, second = (contact.strike for contact in bounces.followed.contacts)
@@ -127,6 +128,7 @@ def test_after_a_long_flight_a_contact_is_a_first_one_at_its_speed(steel: tuple[
     assert second.velocity < first.velocity
 
 
+@pytest.mark.tenth
 def test_the_share_that_goes_down_in_waves_falls_with_the_speed_to_three_fifths(steel: tuple[Scene, WaveRun]) -> None:
     _, bounces = steel
     losses = [1.0 - quantities(bounces, number)["restitution"] ** 2 for number in (0, 1)]

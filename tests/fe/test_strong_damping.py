@@ -77,6 +77,7 @@ def test_a_force_that_peaks_early_has_steps_enough_to_begin_with(slow: float) ->
     assert shares_of(found, "time_step").max() < 1.0
 
 
+@pytest.mark.tenth
 def test_what_is_read_between_radii_remembered_does_not_add_up_over_more_steps() -> None:
     """Of a dashpot every step asks the surface for its past: the duration's error falls with the steps squared."""
     striker = {"shape": "cone", "angle": 11.5, "mass": 0.05, "velocity": 0.0093}

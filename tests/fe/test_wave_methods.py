@@ -90,6 +90,7 @@ def test_a_rod_too_long_for_so_short_a_contact_has_a_name() -> None:
         simulate(Scene.load("concrete-pole", {"striker.mass": 1e-6}), "fe", {})
 
 
+@pytest.mark.tenth
 def test_a_contact_within_one_step_has_a_name() -> None:
     """A penalty as stiff as many elements, in stages: touch and separation between two samples."""
     scene = rod(np.random.default_rng(85), 1.2, "fixed")

@@ -84,6 +84,7 @@ def test_a_spoiled_curve_is_fitted_or_refused_by_name(
     assert codes >= {0, 2}, "both what is fitted and what is refused is among them"
 
 
+@pytest.mark.tenth
 def test_many_rows_are_thinned_with_a_word(tmp_path: Path, run: Callable[[Sequence[str]], Any]) -> None:
     """The means of neighbours tell the same parameter as all rows, to what the noise of the rows leaves open."""
     time = np.linspace(0.0, 6e-5, 20_000)
