@@ -56,8 +56,8 @@ class HalfSpace(Target):
         """Only a whole body with inertia: else one E* of both tells all, and a target of shape sphere knows it."""
         if inertia and shape.whole_mass(1.0) is not None:
             return []
-        reason = "a half_space is struck by a rigid body in this version, or by a sphere with model.inertia = true"
-        return [Fault(source, "striker.material", f"{reason}; else leave it out")]
+        reason = 'target.shape = "half_space" is struck by a rigid body in this version, or by a sphere with inertia'
+        return [Fault(source, "striker.material", f"{reason}; leave it out, or set model.inertia = true")]
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """A half-plane has no finite compliance of its own: plane strain needs a datum, and only that."""
