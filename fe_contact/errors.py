@@ -81,6 +81,14 @@ class TooManySteps(NotReached):
         super().__init__(f"{steps} steps reached only t = {time:.6g} s; cure: {cure}")
 
 
+class ContactTooBrief(NotReached):
+    """The contact ended within so few steps that nothing can be read of it."""
+
+    def __init__(self, steps: int, time: float) -> None:
+        cure = "cure: --method ting where it answers, or less viscosity"
+        super().__init__(f"the contact was over after {steps} steps, at t = {time:.3g} s, sooner than expected; {cure}")
+
+
 class PastTooLarge(NotReached):
     """So many steps that what the surface remembers of each would not fit into memory."""
 

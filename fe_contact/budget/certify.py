@@ -42,11 +42,12 @@ import numpy as np
 import numpy.typing as npt
 
 from fe_contact.budget.budget import SETTING, Causes
-from fe_contact.budget.curve import Curve, extrapolated
+from fe_contact.budget.curve import FEWEST_ROWS, Curve, extrapolated
 from fe_contact.budget.runs import Runs
 from fe_contact.budget.several import Judged, Several
 from fe_contact.budget.variation import SAFETY, UNORDERED, Softening, Variation, compliance_change, factor
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
+from fe_contact.errors import ContactTooBrief
 from fe_contact.progress import Count, Progress, silent
 from fe_contact.schemes.base import SCHEMES
 from fe_contact.settings import Numerics
@@ -100,7 +101,8 @@ class Certified(Several):
 def certify(
     strike: Strike, geometry: Geometry, numerics: Numerics, impacts: int = 1, progress: Progress = silent
 ) -> Certified:
-    """March with ``numerics`` and with each setting varied; raises where the march itself fails.
+    """March with ``numerics`` and with each setting varied; raises where the march itself fails, and
+    ContactTooBrief.
 
     Up to so many ``impacts``: the budget is that of the first, those of the ``later`` ones stand in it. Where forces
     ripple and bars miss the tolerance, the runs are judged again as edges meet corners; the narrower bars stand.
@@ -109,6 +111,9 @@ def certify(
     runs = Runs(strike, geometry, impacts, Count.of(progress, message, MARCHES * impacts * numerics.steps))
     numerics = runs.placed(numerics, numerics.steps // 4 if numerics.steps >= LEAST_HALVED else numerics.steps)
     followed, surface = runs.follow(numerics), runs.surface(numerics)
+    first = followed.contacts[0].march
+    if len(first.time) < FEWEST_ROWS:
+        raise ContactTooBrief(len(first.time) - 1, float(first.time[-1]))
 
     def found(read: Read) -> Certified:
         judged = [_judged(runs, read, number, numerics, impacts == 1) for number in range(len(followed.contacts))]

@@ -30,6 +30,7 @@ from fe_contact.assembly.forms import Array
 from fe_contact.march.impact import Energies, balanced
 from fe_contact.steppers.steps import March, Strike
 
+FEWEST_ROWS = 5  # of a march, through which a quartic tells a peak
 STENCIL = 6  # nodes of a polynomial
 PLACES = 17  # equidistant, from which a quartic is fitted
 FINE = np.linspace(0.0, 1.0, 201)  # where in an interval a maximum is looked for
@@ -404,7 +405,7 @@ def squared_radius(march: March) -> tuple[Array, Array]:
     keep = march.radius_time < duration * (1 - 1e-9)
     time, square = march.radius_time[keep], march.radius[keep] ** 2
     last = 0.0 if march.separated else float(march.radius[-1] ** 2)
-    turn, _ = peak(march.time, march.depth)
+    turn = peak(march.time, march.depth)[0] if len(march.time) >= FEWEST_ROWS else duration
     growing = int(np.searchsorted(time, turn))
     if 3 <= growing < len(time) and turn < time[growing]:  # no row may stand there already
         before = slice(growing - 3, growing)

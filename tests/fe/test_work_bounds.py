@@ -18,7 +18,7 @@ from fe_contact.budget.budget import TotalWork
 from fe_contact.budget.certify import certify
 from fe_contact.budget.runs import operations
 from fe_contact.dynamics import march
-from fe_contact.errors import BodyTooFine, PastTooLarge, TooManySteps, WavesTooDear
+from fe_contact.errors import BodyTooFine, ContactTooBrief, PastTooLarge, TooManySteps, WavesTooDear
 from fe_contact.march import impact
 from fe_contact.march.impacts import Grounded
 from fe_contact.methods import simulate
@@ -35,6 +35,7 @@ from lumped.result.result import meets
 from lumped.scene.tables import load
 
 COARSE = {"tolerance": 3e-2, "elements_per_contact": 3.0, "steps": 64, "order": 2}
+ROUNDED = {"shape": "rounded_punch", "flat_radius": 0.003, "edge_radius": 0.01}
 QUICK = [f"--set=numerics.{key}={value}" for key, value in COARSE.items() if key != "tolerance"]
 
 
@@ -56,6 +57,18 @@ def test_a_past_too_large_for_memory_is_refused_by_name() -> None:
     slow = {"shape": "sphere", "radius": 0.006, "mass": 0.05, "velocity": 0.02}
     with pytest.raises(PastTooLarge, match=r"8192 steps, .* 8\.6 GB: accepted up to 4; cure: .*--method ting"):
         simulate(Scene.from_dict({"striker": slow, "target": {"shape": "half_space", "material": fluid}}), "fe", {})
+
+
+@pytest.mark.parametrize("striker", [{"shape": "punch", "radius": 0.006}, ROUNDED], ids=lambda one: one["shape"])
+def test_a_contact_over_in_fewer_steps_than_show_it_has_a_name(striker: dict[str, Any]) -> None:
+    """A fluid so viscous that it throws a flat end back at once."""
+    fluid = {"law": "operators", "p": [1.0, 1.0], "q": [0.0, 1e15, 3e14], "nu": 0.3}
+    bodies = {
+        "striker": {**striker, "mass": 0.05, "velocity": 0.02},
+        "target": {"shape": "half_space", "material": fluid},
+    }
+    with pytest.raises(ContactTooBrief, match=r"over after 2 steps, .* cure: --method ting"):
+        simulate(Scene.from_dict(bodies), "fe", {"tolerance": 0.01, "steps": 40})
 
 
 def test_a_finer_body_that_is_refused_leaves_what_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
