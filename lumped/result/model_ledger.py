@@ -221,7 +221,8 @@ def finite_strain(geometry: Geometry, peak: Peak, struck: bool) -> LedgerEntry:
     effect, treated, material = "finite strain", "small displacements", geometry.material
     if peak.contact_radius == 0.0 or peak.depth == 0.0:
         return LedgerEntry(effect, treated, 0.0, "nothing touches", key=LARGE, value="finite")
-    strains = geometry.target.strains(geometry.shape, material.nu, peak.depth, peak.contact_radius)
+    rim = geometry.target.fixed_radius(geometry.shape) or math.inf  # beyond it, by rounding, a punch has no profile
+    strains = geometry.target.strains(geometry.shape, material.nu, peak.depth, min(peak.contact_radius, rim))
     if material.hyperelastic is not None:
         size, name = abs(strains.change(energy_of(material.hyperelastic), struck)), ENERGY_NAMES[material.hyperelastic]
         return LedgerEntry(effect, treated, size, f"{name}, to first order in strain", key=LARGE, value="finite")
