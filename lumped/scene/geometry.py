@@ -15,6 +15,7 @@ from lumped.shapes._block import Block
 from lumped.targets import Target
 
 YIELDING_UNDER = ("sphere", "cone", "power", "punch")  # strikers under which a half-space may yield
+STEADY = '"bulk" changes nu in time, which no far field follows in this version; accepted: "poisson"'
 SPARE_MASS = 0.01  # of a whole body with inertia, which its density gives way to
 
 
@@ -128,6 +129,17 @@ def flying_faults(source: str, geometry: Geometry, mass: float, target_mass: flo
             reason = f"{said}; with model.inertia a {body.name} has the mass of its density; accepted: {whole:.6g} kg"
             faults.append(Fault(source, f"{part}.mass", f"{reason} within {SPARE_MASS:.0%}, or another density"))
     return faults
+
+
+def changing_faults(source: str, geometry: Geometry) -> list[Fault]:
+    """A Poisson's ratio that changes in time, for bodies whose waves are followed only where it stays the same."""
+    if not geometry.target.steady_waves(geometry.shape):
+        return []
+    return [
+        Fault(source, f"{part}.material.constant", STEADY)
+        for part, material in geometry.yielding
+        if material.constant == "bulk" and not material.young.is_elastic
+    ]
 
 
 def plasticity_faults(source: str, model: Model, geometry: Geometry | None, impacts: int = 1) -> list[Fault]:
