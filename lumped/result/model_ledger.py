@@ -15,10 +15,11 @@ from lumped.materials.energies.base import DEFAULT, energy_of
 from lumped.materials.radiation import Pulse
 from lumped.result.history import History
 from lumped.result.result import LedgerEntry, Quantity, percent
-from lumped.scene.geometry import Geometry, finite_faults, plasticity_faults
+from lumped.scene.geometry import Geometry, changing_faults, finite_faults, plasticity_faults
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
+from lumped.shapes._block import Block
 from lumped.shapes.base import Shape
 from lumped.targets.rod import Rod
 
@@ -134,8 +135,12 @@ def inertia(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
     mass, geometry = scene.reduced_mass, scene.geometry
     pulse = Pulse(peak.force, peak.duration, mass, 0.5 * mass * scene.velocity**2, peak.contact_radius)
     estimate, note = scene.target.inertia_left_out(geometry.shape, geometry.material, pulse)
-    built = scene.target.waves_under(geometry.shape) and not (model.finite or model.plasticity)
-    return LedgerEntry(effect, "neglected", estimate, note, "model.inertia" if built else "", value=built or None)
+    refused = [str(fault) for fault in changing_faults("", geometry)]
+    if scene.motion.impacts > 1 and scene.target.rings_on(geometry.shape):
+        refused.append("what rings on between contacts is followed in one impact")
+    built = scene.target.waves_under(geometry.shape) and not (model.finite or model.plasticity or refused)
+    said = "; ".join([note, *refused])
+    return LedgerEntry(effect, "neglected", estimate, said, "model.inertia" if built else "", value=built or None)
 
 
 def gravity(scene: Scene, model: Model, peak: Peak, mass: float) -> LedgerEntry:
@@ -150,6 +155,8 @@ def gravity(scene: Scene, model: Model, peak: Peak, mass: float) -> LedgerEntry:
     more = _pressed_on(GRAVITY * mass / peak.force, _exponent(scene, peak)) if peak.force > 0.0 else math.inf
     if model.direction == "down":
         note = "of a mass that meets a power of the depth"
+        if model.plasticity:
+            return LedgerEntry(effect, "neglected", more, f"{note}; no weight with model.plasticity in this version")
         return LedgerEntry(effect, "neglected", more, note, "model.gravity", value=GRAVITY)
     down = f"a drop (--set model.direction=down) leaves out {percent(more)}"
     asked = f"{down}, a horizontal motion (--set model.direction=horizontal) nothing"
@@ -221,7 +228,8 @@ def finite_strain(geometry: Geometry, peak: Peak, struck: bool) -> LedgerEntry:
     effect, treated, material = "finite strain", "small displacements", geometry.material
     if peak.contact_radius == 0.0 or peak.depth == 0.0:
         return LedgerEntry(effect, treated, 0.0, "nothing touches", key=LARGE, value="finite")
-    strains = geometry.target.strains(geometry.shape, material.nu, peak.depth, peak.contact_radius)
+    rim = geometry.target.fixed_radius(geometry.shape) or math.inf  # beyond it, by rounding, a punch has no profile
+    strains = geometry.target.strains(geometry.shape, material.nu, peak.depth, min(peak.contact_radius, rim))
     if material.hyperelastic is not None:
         size, name = abs(strains.change(energy_of(material.hyperelastic), struck)), ENERGY_NAMES[material.hyperelastic]
         return LedgerEntry(effect, treated, size, f"{name}, to first order in strain", key=LARGE, value="finite")
@@ -296,8 +304,26 @@ def sideways(scene: Scene, peak: Peak) -> LedgerEntry:
         forces = [_struck(one, curve, scene, peak) for one in (_bulk_modulus(scene, peak), material.contact_modulus())]
     except FeContactError:  # no load curve, or one that ends before this depth
         return LedgerEntry(effect, treated, None, "no load curve tells it; run both of target.material.constant")
-    note, key = "both, by a power of the depth", "" if scene.model.finite else f"{solid}.material.constant"
-    return LedgerEntry(effect, treated, abs(forces[0] / forces[1] - 1.0), note, key, value="bulk" if key else None)
+    refused = _no_bulk(scene)
+    note, key = "both, by a power of the depth", "" if refused else f"{solid}.material.constant"
+    said = f"{note}; {refused}" if refused else note
+    return LedgerEntry(effect, treated, abs(forces[0] / forces[1] - 1.0), said, key, value=None if refused else "bulk")
+
+
+def _no_bulk(scene: Scene) -> str:
+    """Why finite elements take no bulk modulus that stays while the shear modulus relaxes; empty where they do."""
+    geometry, state = scene.geometry, "with a constant bulk modulus in this version"
+    target, shape, constant = geometry.target, geometry.shape, replace(geometry.material, constant="bulk")
+    if scene.model.finite:
+        refused = finite_faults("", scene.model, replace(geometry, material=constant), scene.motion.impacts)
+        return str(refused[0]) if refused else ""
+    if scene.model.inertia and target.steady_waves(shape):
+        return f"no waves {state}"
+    if not target.has_length or (isinstance(shape, Block) and shape.uniform):
+        return ""
+    if target.name == "half_space":
+        return f"no impact of a {shape.name} on a {target.name} {state}"
+    return f"one impact is followed {state}" if scene.motion.impacts > 1 else ""
 
 
 def _bulk_modulus(scene: Scene, peak: Peak) -> Relaxation:
@@ -377,7 +403,8 @@ def plasticity(scene: Scene | Indenter, model: Model, peak: Peak, share: float =
     over = pressure / (FIRST_YIELD * material.yield_strength)
     softer = FLOW * math.log(max(over, 1.0) ** 2) ** 2
     change, note = share * softer / (1.0 + softer), f"p0/(1.6 Y) = {over:.3g}"
-    refused = plasticity_faults("", replace(model, plasticity=True), scene.geometry)
+    impacts = scene.motion.impacts if isinstance(scene, Scene) else 1
+    refused = plasticity_faults("", replace(model, plasticity=True), scene.geometry, impacts)
     if refused:
         return LedgerEntry(effect, "neglected", change, f"{note}; {refused[0]}")
     return LedgerEntry(effect, "neglected", change, note, "model.plasticity", value=True)

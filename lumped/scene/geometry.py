@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from lumped.errors import BadInput, Fault
 from lumped.load_curves import HertzImpact
@@ -15,6 +15,7 @@ from lumped.shapes._block import Block
 from lumped.targets import Target
 
 YIELDING_UNDER = ("sphere", "cone", "power", "punch")  # strikers under which a half-space may yield
+STEADY = '"bulk" changes nu in time, which no far field follows in this version; accepted: "poisson"'
 SPARE_MASS = 0.01  # of a whole body with inertia, which its density gives way to
 
 
@@ -48,6 +49,18 @@ class Geometry:
         steady = all(one.constant == "poisson" or one.young.is_elastic for one in materials)
         uniform = isinstance(self.shape, Block) and self.shape.uniform
         return steady or uniform or not self.target.has_length
+
+    @property
+    def springs(self) -> Geometry:
+        """The same of elastic bodies: where nu stays, their load curve over their modulus is that of these.
+
+        As they are in the end, or at once where a fluid is among them; dashpots alone count by their viscosities.
+        """
+        bodies = [self.material] if self.striker_material is None else [self.material, self.striker_material]
+        known = zip(*((one.young.relaxed, one.young.glassy, one.young.viscosity) for one in bodies), strict=True)
+        moduli = next((found for found in known if all(found)), [1.0] * len(bodies))
+        alike = [Material(Relaxation(modulus), one.nu) for modulus, one in zip(moduli, bodies, strict=True)]
+        return replace(self, material=alike[0], striker_material=None if len(alike) == 1 else alike[1])
 
 
 def contact_modulus(shape: Shape, material: Material, striker: Material | None) -> Relaxation:
@@ -128,6 +141,17 @@ def flying_faults(source: str, geometry: Geometry, mass: float, target_mass: flo
             reason = f"{said}; with model.inertia a {body.name} has the mass of its density; accepted: {whole:.6g} kg"
             faults.append(Fault(source, f"{part}.mass", f"{reason} within {SPARE_MASS:.0%}, or another density"))
     return faults
+
+
+def changing_faults(source: str, geometry: Geometry) -> list[Fault]:
+    """A Poisson's ratio that changes in time, for bodies whose waves are followed only where it stays the same."""
+    if not geometry.target.steady_waves(geometry.shape):
+        return []
+    return [
+        Fault(source, f"{part}.material.constant", STEADY)
+        for part, material in geometry.yielding
+        if material.constant == "bulk" and not material.young.is_elastic
+    ]
 
 
 def plasticity_faults(source: str, model: Model, geometry: Geometry | None, impacts: int = 1) -> list[Fault]:

@@ -73,6 +73,10 @@ class RoundTarget(Target):
         """Only where it flies."""
         return super().waves_under(shape) and self.support == "free"
 
+    def steady_waves(self, shape: Shape) -> bool:
+        """As those of the ball that strikes it."""
+        return True
+
     def matching(self, shape: Shape) -> Shape:
         """Its own profile, exact or a parabola as the striker's."""
         return self.outline.resolved("exact" if shape.name == self.strikers[0] else "parabola")

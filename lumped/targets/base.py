@@ -144,6 +144,14 @@ class Target(Record, ABC):
         """Whether `model.inertia` can be true under a striker of this shape."""
         return self.has_inertia and shape.flat_radius == 0.0
 
+    def rings_on(self, shape: Shape) -> bool:
+        """Whether waves are left when the contact ends, so that finite elements follow one impact with them."""
+        return True
+
+    def steady_waves(self, shape: Shape) -> bool:
+        """Whether its waves are followed only while Poisson's ratio stays the same."""
+        return False
+
     def strained_instead(self, shape: Shape) -> str:
         """What can have large strains in place of this body under a striker of this shape; empty where it can."""
         if not self.large_strains:

@@ -44,6 +44,14 @@ class HalfSpace(Target):
         """Not in plane strain."""
         return super().waves_under(shape) and not shape.plane
 
+    def rings_on(self, shape: Shape) -> bool:
+        """No wave comes back."""
+        return False
+
+    def steady_waves(self, shape: Shape) -> bool:
+        """By its far field."""
+        return True
+
     def strained_instead(self, shape: Shape) -> str:
         """A layer in plane strain."""
         return 'target.shape = "layer"' if shape.plane else super().strained_instead(shape)

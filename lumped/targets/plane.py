@@ -57,6 +57,14 @@ class Plane(Target):
         """A block's too that is strained alike everywhere."""
         return not isinstance(shape, Block) or shape.uniform
 
+    def rings_on(self, shape: Shape) -> bool:
+        """A ball's own; a block is followed from contact to contact."""
+        return not isinstance(shape, Block)
+
+    def steady_waves(self, shape: Shape) -> bool:
+        """A ball's, not a block's."""
+        return not isinstance(shape, Block)
+
     def strained_instead(self, shape: Shape) -> str:
         """A block, or what is rigid on a half-space."""
         return "" if isinstance(shape, Block) else f"a prism or a plate; or a rigid {shape.name} on a half_space"

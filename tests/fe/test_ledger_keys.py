@@ -75,6 +75,59 @@ def test_what_does_not_relax_with_large_strains_has_no_larger_model(changes: dic
     assert "with large strains in this version" in entry.note
 
 
+INERTIA, BULK, WEIGHT = "target inertia", "constant nu against constant bulk modulus", "gravity"
+RELAXING: dict[str, object] = {
+    "target.material": {"law": "sls", "E0": 1e6, "R1": 0.5, "R2": 0.01, "nu": 0.4, "density": HEAVY}
+}
+THREE: dict[str, object] = {"motion.impacts": 3, "model.gravity": 9.81}
+STRAINED: dict[str, object] = {"model.kinematics": "finite"}
+ELASTIC: dict[str, object] = {
+    "target.material": {"law": "elastic", "E": 1e6, "nu": 0.4, "density": HEAVY, "yield_strength": 1e4},
+    "model.direction": "down",
+}
+SPLIT: dict[str, object] = {"target.material.hyperelastic": "neo_hooke_split"}
+
+
+@pytest.mark.parametrize(
+    ("name", "changes", "effect", "change", "works"),
+    [
+        ("polymer-sphere", {}, INERTIA, {"model.inertia": True}, True),
+        ("polymer-sphere", {"target.material.constant": "bulk"}, INERTIA, {"model.inertia": True}, False),
+        ("polymer-sphere", THREE, INERTIA, {"model.inertia": True}, True),
+        ("polymer-layer", THREE, INERTIA, {"model.inertia": True}, False),
+        ("polymer-sphere-waves", {}, BULK, {"target.material.constant": "bulk"}, False),
+        ("polymer-layer-waves", {}, BULK, {"target.material.constant": "bulk"}, True),
+        ("polymer-sphere", THREE, BULK, {"target.material.constant": "bulk"}, True),
+        ("polymer-layer", THREE, BULK, {"target.material.constant": "bulk"}, False),
+        ("polymer-prism", THREE, BULK, {"striker.material.constant": "bulk"}, True),
+        ("polymer-half-plane", RELAXING, BULK, {"target.material.constant": "bulk"}, False),
+        ("polymer-sphere", STRAINED, BULK, {"target.material.constant": "bulk"}, False),
+        ("polymer-layer", STRAINED, BULK, {"target.material.constant": "bulk"}, False),
+        ("rod-in-ring", STRAINED, BULK, {"target.material.constant": "bulk"}, False),
+        ("rod-in-ring", STRAINED | SPLIT, BULK, {"target.material.constant": "bulk"}, True),
+        ("polymer-sphere", ELASTIC, WEIGHT, {"model.gravity": 9.81}, True),
+        ("polymer-sphere", ELASTIC | {"model.plasticity": True}, WEIGHT, {"model.gravity": 9.81}, False),
+        ("polymer-sphere", ELASTIC, "plasticity", {"model.plasticity": True}, True),
+        ("polymer-sphere", ELASTIC | {"motion.impacts": 2}, "plasticity", {"model.plasticity": True}, False),
+    ],
+)
+def test_a_key_stands_where_what_the_scene_asks_beside_it_is_built(
+    name: str, changes: dict[str, object], effect: str, change: dict[str, object], works: bool
+) -> None:
+    scene = Scene.load(name, changes)
+    check(scene, {})
+    (entry,) = [one for one in model_ledger(scene, PEAK) if one.effect == effect]
+    assert entry.estimate is not None
+    ((key, value),) = change.items()
+    assert (entry.key, entry.value) == ((key, value) if works else ("", None))
+    if works:
+        check(scene.changed(change), {})
+        return
+    assert entry.note.partition("; ")[2], "the reason stands behind what the estimate is of"
+    with pytest.raises(FeContactError):
+        check(scene.changed(change), {})
+
+
 def test_targets_of_large_strains_are_those_that_have_a_mesh_for_them() -> None:
     meshed = {name for name, member in MESHED.members.items() if member.solid is not None}
     own = {name for name, part in TARGETS.members.items() if part.kind.large_strains}

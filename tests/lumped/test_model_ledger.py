@@ -132,6 +132,15 @@ def test_a_contact_wider_than_a_round_section_is_as_wide_as_that() -> None:
     assert np.isfinite(beyond).all()
 
 
+def test_a_punch_a_rounding_wider_than_it_is_strains_as_much() -> None:
+    """As a history that is read between its rows has it: beyond the rim there is no profile."""
+    geometry = Scene.load("polymer-punch").geometry
+    rim = geometry.shape.fixed_radius or math.nan
+    at, beyond = (finite_strain(geometry, Peak(1.0, 1e-4, width, 1.0), True) for width in (rim, rim * (1.0 + 1e-14)))
+    assert at == beyond
+    assert math.isfinite(at.size)
+
+
 def test_yielding_starts_at_its_threshold() -> None:
     # audit 2.2: p0 = 3.30 GPa at 66.2 N, elastic only if Y > 2.06 GPa
     for strength, yields in ((2.1e9, False), (2.0e9, True), (5e8, True)):

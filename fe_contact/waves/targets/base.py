@@ -18,6 +18,7 @@ from fe_contact.waves.plan import Cost
 from lumped.errors import BadInput, Fault
 from lumped.materials.radiation import shear_speed
 from lumped.result.result import Result
+from lumped.scene.geometry import changing_faults
 from lumped.scene.scene import Scene
 from lumped.schema.members import Folder
 
@@ -64,19 +65,9 @@ def too_fast(scene: Scene) -> list[Fault]:
     return [Fault(scene.source, "striker.velocity", reason)]
 
 
-def changing(scene: Scene) -> list[Fault]:
-    """A Poisson's ratio that changes in time."""
-    reason = '"bulk" changes nu in time, which no far field follows in this version; accepted: "poisson"'
-    return [
-        Fault(scene.source, f"{part}.material.constant", reason)
-        for part, material in scene.geometry.yielding
-        if material.constant == "bulk" and not material.young.is_elastic
-    ]
-
-
 def check_balls(scene: Scene) -> None:
     """Raise BadInput for several impacts of a ball that yields, one too fast, and a changing Poisson's ratio."""
     scene.check_single("fe, where the ball rings on between contacts,")
-    faults = [*too_fast(scene), *changing(scene)]
+    faults = [*too_fast(scene), *changing_faults(scene.source, scene.geometry)]
     if faults:
         raise BadInput(faults)

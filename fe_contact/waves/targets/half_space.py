@@ -28,10 +28,11 @@ from fe_contact.waves.balls import Ball, flying
 from fe_contact.waves.impact import choices_of
 from fe_contact.waves.moving import BEYOND, SMALLEST, Flying, Moving, UnitBody, WaveSide
 from fe_contact.waves.plan import SMOOTH_STEPS, SPREAD, SPRINGS, STEPS, TRAVEL, contact_time, placed
-from fe_contact.waves.targets.base import WaveTarget, changing, too_fast
+from fe_contact.waves.targets.base import WaveTarget, too_fast
 from lumped.errors import BadInput, Fault
 from lumped.laws import mdr
 from lumped.result.result import Result
+from lumped.scene.geometry import changing_faults
 from lumped.scene.scene import Scene
 
 NEAREST = 20.0  # contact radii: the far springs' own need
@@ -45,7 +46,7 @@ def check(scene: Scene) -> None:
     """Raise BadInput for a striker with a rim, in plane strain, or that rings on between impacts, and a changing nu."""
     if scene.striker_material is not None:
         scene.check_single("fe, where the ball rings on between contacts,")
-    shape, faults = scene.geometry.shape, [*too_fast(scene), *changing(scene)]
+    shape, faults = scene.geometry.shape, [*too_fast(scene), *changing_faults(scene.source, scene.geometry)]
     if shape.plane or shape.flat_radius > 0.0:
         reason = f"{shape.name}: no waves under it in this version; accepted with model.inertia: sphere, cone, power"
         faults.append(Fault(scene.source, "striker.shape", reason))
