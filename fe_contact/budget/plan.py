@@ -84,7 +84,7 @@ def plan(scene: Scene, given: Given) -> Plan:
     size = scales(scene, chosen)
     # gravity holds what does not separate, and swings it; a dashpot may answer most at the touch
     held = max(2.0 * size.peak_time, scene.elastic_contact_time)
-    contact_time = size.duration or (min(held, scene.end_time) if scene.gravity > 0.0 else scene.end_time)
+    contact_time = size.duration or min(held if scene.gravity > 0.0 else size.end, scene.end_time)
     peak_share = share_of_peak(size.peak_time, contact_time)
     placed = chosen.varied(
         steps=_steps(tolerance, peak_share, _flat_steps(tolerance) if _flat(scene) else _finer(scene)),

@@ -359,8 +359,8 @@ def groups(scene: Scene, values: Mapping[str, float | None], history: History) -
 
     E_i/E_inf of the contact moduli; tau/T, every relaxation time over the duration; nu; a/R with the largest contact
     radius; h/a, thickness over that; and, F0 and T0 the peak force and duration of the shape's elastic impact on the
-    half-space with the relaxed modulus (a fluid's with the instantaneous one, or that of a dashpot alone), F/F0, t/T0 at
-    the peak, T/T0.
+    half-space with the relaxed modulus (a fluid's with the instantaneous one, or that of a dashpot alone), F/F0, t/T0
+    at the peak, T/T0.
     """
     if not scene.has_geometry:
         return {}

@@ -51,6 +51,20 @@ def exact(campaign_size: Callable[[int], int]) -> list[lumped.Result]:
     return [lumped.simulate(mdr.of(scene), scene, tolerance=REFERENCE_TOLERANCE) for scene in scenes]
 
 
+@pytest.mark.parametrize("shape", ["sphere", "cone"])
+def test_a_dashpot_alone_stops_the_striker_and_its_steps_end_where_it_rests(shape: str) -> None:
+    """Not at the end of the scene's time, 800 times as late as the peak."""
+    fluid = {"law": "operators", "p": [1.0], "q": [0.0, 1e4], "nu": 0.3}
+    size = {"sphere": {"radius": 0.006}, "cone": {"angle": 25.0}}[shape]
+    striker = {"shape": shape, **size, "mass": 0.05, "velocity": 0.02}
+    scene = lumped.Scene.from_dict({"striker": striker, "target": {"shape": "half_space", "material": fluid}})
+    found, exact = fe_contact.run(scene, 0.03), lumped.simulate(ting.of(scene), scene, tolerance=1e-6)
+    assert found.converged
+    for name in ("peak_force", "peak_time", "peak_depth", "impulse"):
+        one, other = found.quantities[name], exact.quantities[name]
+        assert abs(one.value - other.value) <= one.error + other.error, name
+
+
 @pytest.mark.tenth
 @pytest.mark.parametrize("tolerance", TOLERANCES)
 def test_the_bars_cover_and_few_marches_do(exact: list[lumped.Result], tolerance: float) -> None:

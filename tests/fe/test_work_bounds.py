@@ -23,6 +23,7 @@ from fe_contact.march import impact
 from fe_contact.march.impacts import Grounded
 from fe_contact.methods import simulate
 from fe_contact.settings import Numerics
+from fe_contact.steppers import scaled_surface
 from fe_contact.steppers.flat_end import FlatEnd
 from fe_contact.steppers.struck import Deformable
 from fe_contact.targets.base import struck
@@ -51,12 +52,10 @@ def test_a_body_too_fine_is_refused_before_its_matrix(name: str, bound: str, mon
         simulate(Scene.load(name), "fe", {"elements_per_contact": 7.7})
 
 
-def test_a_past_too_large_for_memory_is_refused_by_name() -> None:
-    """A sphere in a fluid without end comes to rest after thousands of times that its force took to rise."""
-    fluid = {"law": "operators", "p": [1.0], "q": [0.0, 1e4], "nu": 0.3}
-    slow = {"shape": "sphere", "radius": 0.006, "mass": 0.05, "velocity": 0.02}
-    with pytest.raises(PastTooLarge, match=r"8192 steps, .* 8\.6 GB: accepted up to 4; cure: .*--method ting"):
-        simulate(Scene.from_dict({"striker": slow, "target": {"shape": "half_space", "material": fluid}}), "fe", {})
+def test_a_past_too_large_for_memory_is_refused_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(scaled_surface, "MOST_REMEMBERED", 1e6)
+    with pytest.raises(PastTooLarge, match=r"40 steps, .* remember 0\.0013 GB: .* up to 0.001; cure: .*--method ting"):
+        simulate(Scene.load("polymer-sphere"), "fe", {"steps": 40})
 
 
 @pytest.mark.parametrize("striker", [{"shape": "punch", "radius": 0.006}, ROUNDED], ids=lambda one: one["shape"])

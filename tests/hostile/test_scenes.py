@@ -154,7 +154,7 @@ class Scenes(Mutations):
 
     def __init__(self, seed: int) -> None:
         super().__init__(seed, [table_of(PACKAGED.path(name)) for name in PACKAGED.names])
-        self.ways += (self.exchange_part, self.exchange_material, self.switch, self.switch)
+        self.ways += (self.exchange_part, self.exchange_material, self.draw_material, self.switch, self.switch)
 
     def exchange_part(self, table: Table) -> None:
         part, other = self.rng.choice(TOP[1:]), self.rng.choice(self.known)
@@ -167,6 +167,26 @@ class Scenes(Mutations):
         body = table.get(self.rng.choice(BODIES))
         if found and isinstance(body, dict):
             body["material"] = copy.deepcopy(found[0])
+
+    def draw_material(self, table: Table) -> None:
+        """Of any network: with a spring for ever, a fluid, or a dashpot alone; its times up to 1e6 contact times."""
+        body = table.get("target")
+        if not isinstance(body, dict):
+            return
+        modulus, time = 10.0 ** self.rng.uniform(4, 12), 10.0 ** self.rng.uniform(-9, 3)
+        viscosity, ratio = modulus * time, 10.0 ** self.rng.uniform(-3, 3)
+        networks: Sequence[Table] = (
+            {"law": "elastic", "E": modulus},
+            {"law": "kelvin_voigt", "E": modulus, "eta": viscosity},
+            {"law": "maxwell", "E": modulus, "eta": viscosity},
+            {"law": "sls", "E1": modulus, "E2": ratio * modulus, "C1": viscosity},
+            {"law": "prony", "E_inf": 0.0, "E": [modulus, ratio * modulus], "tau": [time, ratio * time]},
+            {"law": "operators", "p": [1.0], "q": [0.0, viscosity]},
+            {"law": "operators", "p": [1.0, time], "q": [0.0, viscosity, ratio * viscosity * time]},
+            {"law": "fractional_zener", "E_inf": modulus, "E_glass": 50.0 * modulus, "tau": time, "alpha": 0.4},
+        )
+        nu = self.rng.choice((-0.5, 0.0, 0.3, 0.45, 0.4999))
+        body["material"] = {**self.rng.choice(networks), "nu": nu, "density": 1200.0}
 
     def switch(self, table: Table) -> None:
         part = self.rng.choice(list(SWITCHES))
