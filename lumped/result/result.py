@@ -14,7 +14,7 @@ from typing import ClassVar
 from lumped.numbers import Array
 from lumped.result.folder import RECORD, publish
 from lumped.result.history import History
-from lumped.scene.geometry import contact_modulus
+from lumped.scene.geometry import contact_modulus, relaxed_impact
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
@@ -359,14 +359,15 @@ def groups(scene: Scene, values: Mapping[str, float | None], history: History) -
 
     E_i/E_inf of the contact moduli; tau/T, every relaxation time over the duration; nu; a/R with the largest contact
     radius; h/a, thickness over that; and, F0 and T0 the peak force and duration of the shape's elastic impact on the
-    half-space with the relaxed modulus (a fluid's with the instantaneous one), F/F0, t/T0 at the peak, T/T0.
+    half-space with the relaxed modulus (a fluid's with the instantaneous one, or that of a dashpot alone), F/F0, t/T0
+    at the peak, T/T0.
     """
     if not scene.has_geometry:
         return {}
     geometry, modulus = scene.geometry, scene.contact_modulus
     largest = float(history.contact_radius.max())
     duration = values["duration"]
-    unit = geometry.shape.hertz_impact(modulus.spring, scene.reduced_mass, scene.velocity)
+    unit = relaxed_impact(geometry.shape, modulus, scene.reduced_mass, scene.velocity)
     return {
         "E_i/E_inf": _over(modulus.instantaneous, modulus.relaxed),
         "tau/T": [_over(tau, duration) for tau in modulus.times],

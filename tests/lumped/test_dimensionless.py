@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lumped import Material, Relaxation, Scene, Sphere, laws, simulate
+from lumped import Material, Model, Relaxation, Scene, Sphere, laws, simulate
 from lumped.indentation import indent as closed_form
 from lumped.scene.indenter import Indenter
 from lumped.shapes.cone import Cone
@@ -61,6 +61,19 @@ def test_what_is_not_defined_is_null() -> None:
     dashpot = Material(replace(YOUNG, viscosity=1e3), 0.3)
     assert told(Scene(Sphere(0.01), 0.02, 0.05, dashpot), "mdr")["E_i/E_inf"] is None
     assert told(Scene.load("paper-steel-hertz"), "hertz") == {}
+
+
+def test_a_dashpot_alone_has_the_groups_that_are_defined() -> None:
+    """It stops a ball of m v = (4/3) sqrt(R) eta* depth^(3/2), and its groups do not know how viscous it is."""
+    viscosities = (1e4, 3e5)
+    dashpots = [Material(Relaxation(0.0, (), (), eta), 0.3) for eta in viscosities]
+    scenes = [Scene(Sphere(0.006), 0.05, 0.02, one, model=Model(profile="parabola")) for one in dashpots]
+    for scene, eta in zip(scenes, viscosities, strict=True):
+        deepest = (0.05 * 0.02 * 0.75 * (1.0 - 0.3**2) / (eta * 0.006**0.5)) ** (2.0 / 3.0)
+        assert simulate(laws.ting.of(scene), scene, 1e-6).history.depth[-1] == pytest.approx(deepest, rel=1e-4)
+    first, second = map(told, scenes)
+    assert first["E_i/E_inf"] is first["T/T0"] is None
+    assert (second["F/F0"], second["t/T0"]) == pytest.approx((first["F/F0"], first["t/T0"]), rel=1e-4)
 
 
 def test_a_slow_indentation_has_the_groups_that_know_no_time() -> None:
