@@ -201,7 +201,8 @@ def _answer(scene: Scene, numerics: Numerics) -> LoadCurve:
     fixed = geometry.target.fixed_radius(geometry.shape)
     if fixed is not None:
         return Column(fixed, math.pi * fixed**2 / _flat_end(geometry, fixed, numerics).stiffness)
-    indenter = Indenter(scene.profile, geometry.material, geometry.target, geometry.striker_material)
+    elastic = geometry.springs
+    indenter = Indenter(scene.profile, elastic.material, geometry.target, elastic.striker_material)
     radii = np.array(WIDTHS) * geometry.target.round_radius(geometry.shape)
     depths = -geometry.target.overlap(indenter.profile, radii, 0.0) / geometry.target.lead
     still: Still = TARGETS.get(geometry.target.name).still(indenter, radii, numerics)

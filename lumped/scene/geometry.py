@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from lumped.errors import BadInput, Fault
 from lumped.load_curves import HertzImpact
@@ -49,6 +49,18 @@ class Geometry:
         steady = all(one.constant == "poisson" or one.young.is_elastic for one in materials)
         uniform = isinstance(self.shape, Block) and self.shape.uniform
         return steady or uniform or not self.target.has_length
+
+    @property
+    def springs(self) -> Geometry:
+        """The same of elastic bodies: where nu stays, their load curve over their modulus is that of these.
+
+        As they are in the end, or at once where a fluid is among them; dashpots alone count by their viscosities.
+        """
+        bodies = [self.material] if self.striker_material is None else [self.material, self.striker_material]
+        known = zip(*((one.young.relaxed, one.young.glassy, one.young.viscosity) for one in bodies), strict=True)
+        moduli = next((found for found in known if all(found)), [1.0] * len(bodies))
+        alike = [Material(Relaxation(modulus), one.nu) for modulus, one in zip(moduli, bodies, strict=True)]
+        return replace(self, material=alike[0], striker_material=None if len(alike) == 1 else alike[1])
 
 
 def contact_modulus(shape: Shape, material: Material, striker: Material | None) -> Relaxation:

@@ -107,6 +107,42 @@ def test_bodies_of_true_size_follow_ting_on_their_own_curve(
         assert abs(found.energy["residual"] or 0.0) <= 5e-3 * (found.energy["in"] or 0.0)
 
 
+FLUID = Material(Relaxation(0.0, (0.9 * YOUNG,), (5e-3,)), 0.4)
+LASTING = Material(Relaxation(YOUNG, (0.5 * YOUNG,), (2e-3,)), 0.4)
+CREEPING = Material(Relaxation(0.0, (0.9 * YOUNG,), (5e-3,), 200.0), 0.4)
+
+
+@pytest.mark.parametrize("solid", [False, True])
+def test_fluids_that_have_no_time_to_flow_are_planned_as_springs(solid: bool) -> None:
+    """Two, or one beside a solid; a slow load would find no force at all."""
+    slow = Material(Relaxation(0.0, (YOUNG,), (1e6,)), 0.3)
+    spring = Material(Relaxation(YOUNG), 0.3)
+    scene = Scene(
+        Sphere(0.01), 0.005, 0.05, slow, target=Ball(0.02, "free"), striker_material=spring if solid else slow
+    )
+    found, elastic = (
+        plan(one, {}).numerics for one in (scene, replace(scene, material=spring, striker_material=spring))
+    )
+    assert found.contact_time == pytest.approx(elastic.contact_time, rel=1e-6)
+    assert found.contact_radius == elastic.contact_radius
+
+
+@pytest.mark.tenth
+@pytest.mark.parametrize(
+    "scene",
+    [
+        Scene(Sphere(0.01), 0.005, 0.05, FLUID, target=Ball(0.01, "free"), striker_material=LASTING),
+        Scene(Roller(0.01, 0.02), 0.02, 0.05, FLUID, target=CylinderTarget(0.01, "free"), striker_material=FLUID),
+        Scene(Sphere(0.01), 0.005, 0.05, CREEPING, target=Ball(0.02, "held")),
+    ],
+    ids=["a fluid and a solid", "two fluids", "a fluid with a dashpot"],
+)
+def test_fluids_of_true_size_follow_ting_on_the_curve_of_springs(scene: Scene, agree: Callable[..., None]) -> None:
+    found = fe_contact.run(scene, TOLERANCE)
+    answered, error = known(scene, found.quantities["peak_depth"].value or 0.0)
+    agree(found, ting(answered), error)
+
+
 @pytest.mark.tenth
 def test_two_materials_of_different_nu_agree_with_finer_settings(
     campaign_size: Callable[[int], int], agree: Callable[..., None]

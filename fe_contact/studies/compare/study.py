@@ -241,7 +241,8 @@ def known(scene: Scene, depth: float) -> tuple[Scene, float]:
     if scene.target.only_with_inertia or not scene.geometry.surface_remembers or has_curve(scene):
         return scene, 0.0
     asked = tuple(float(one) for one in np.geomspace(SHALLOWEST * depth, DEEPEST * depth, DEPTHS))
-    slow = Indenter(scene.profile, scene.geometry.material, scene.target, scene.striker_material)
+    elastic = scene.geometry.springs
+    slow = Indenter(scene.profile, elastic.material, scene.target, elastic.striker_material)
     pressed = indent(slow, asked, {"tolerance": TOLERANCE})
     forces = pressed.force / (pressed.modulus * scene.geometry.shape.total)
     sampled = np.array([asked, forces, pressed.contact_radius])
