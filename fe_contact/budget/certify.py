@@ -99,17 +99,25 @@ class Certified(Several):
 
 
 def certify(
-    strike: Strike, geometry: Geometry, numerics: Numerics, impacts: int = 1, progress: Progress = silent
+    strike: Strike,
+    geometry: Geometry,
+    numerics: Numerics,
+    impacts: int = 1,
+    progress: Progress = silent,
+    fixed: bool = True,
 ) -> Certified:
     """March with ``numerics`` and with each setting varied; raises where the march itself fails, and
     ContactTooBrief.
+
+    ``fixed``: whether as many steps are taken as ``numerics`` says, whatever the first coarse march finds.
 
     Up to so many ``impacts``: the budget is that of the first, those of the ``later`` ones stand in it. Where forces
     ripple and bars miss the tolerance, the runs are judged again as edges meet corners; the narrower bars stand.
     """
     message = f"{numerics.steps} steps, {numerics.elements_per_contact:g} elements along the contact radius"
     runs = Runs(strike, geometry, impacts, Count.of(progress, message, MARCHES * impacts * numerics.steps))
-    numerics = runs.placed(numerics, numerics.steps // 4 if numerics.steps >= LEAST_HALVED else numerics.steps)
+    few = numerics.steps // 4 if numerics.steps >= LEAST_HALVED else numerics.steps
+    numerics = runs.placed(numerics, few, fixed)
     followed, surface = runs.follow(numerics), runs.surface(numerics)
     first = followed.contacts[0].march
     if len(first.time) < FEWEST_ROWS:

@@ -102,6 +102,11 @@ def share_of_peak(peak_time: float, contact_time: float) -> float:
     return min(max(share, SOONEST_PEAK), 1.0) if share > AT_TOUCH else 0.5
 
 
+def crowded(peak_share: float) -> float:
+    """Steps that a force takes which peaks so early, over those of most scenes."""
+    return max(1.0, EARLY_PEAK / peak_share)
+
+
 def _settings(scene: Scene, tolerance: float) -> Numerics:
     """What does not depend on how large the impact is."""
     chosen = {
@@ -148,8 +153,7 @@ def _flat(scene: Scene) -> bool:
 
 def _steps(tolerance: float, peak_share: float, finer: float) -> int:
     """Time steps per contact, so many times `finer`, a multiple of four so that the budget can halve them twice."""
-    early = max(1.0, EARLY_PEAK / peak_share)
-    wanted = early * STEPS_AT_DEFAULT * max(DEFAULT_TOLERANCE / tolerance, 1.0) ** STEPS_ORDER
+    wanted = crowded(peak_share) * STEPS_AT_DEFAULT * max(DEFAULT_TOLERANCE / tolerance, 1.0) ** STEPS_ORDER
     return int(min(4 * math.ceil(finer * math.ceil(wanted / 4)), RANGES["steps"][1]))
 
 

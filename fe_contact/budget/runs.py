@@ -9,12 +9,12 @@ from typing import Generic, TypeVar
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import TotalWork
 from fe_contact.budget.curve import Curve
-from fe_contact.budget.plan import share_of_peak
+from fe_contact.budget.plan import crowded, share_of_peak
 from fe_contact.budget.variation import calmest, calmest_at_corners
 from fe_contact.march.impact import march
 from fe_contact.march.impacts import Followed, SurfaceBouncer, follow
 from fe_contact.progress import Counted, uncounted
-from fe_contact.settings import Numerics
+from fe_contact.settings import RANGES, Numerics
 from fe_contact.steppers.flat_end import FlatEnd
 from fe_contact.steppers.steps import Strike, Work
 from fe_contact.steppers.struck import Deformable, Struck
@@ -95,18 +95,21 @@ class Runs(AnyRuns[Numerics]):
             self._at_corners[number, settings] = calmest_at_corners(rippled, corners)
         return self._at_corners[number, settings]
 
-    def placed(self, settings: Numerics, few: int) -> Numerics:
-        """The settings for a contact as long, and as wide, as a march of ``few`` steps finds it.
+    def placed(self, settings: Numerics, few: int, fixed: bool = True) -> Numerics:
+        """The settings for a contact as long, and as wide, as a march of ``few`` steps finds it; unless they are
+        ``fixed``, with as many steps as the force takes that peaks as early as found there.
 
         Where it fails, or does not separate, what was expected stands.
         """
+        expected = settings.peak_share
         for _ in range(PLACINGS):
             found = self.curve(0, settings.varied(steps=few))
             if found is None or not found.separated or abs(found.duration / settings.contact_time - 1.0) <= PLACED:
                 break
             share = share_of_peak(found.quantities["peak_time"] or 0.0, found.duration)
             settings = settings.varied(contact_time=found.duration, peak_share=share)
-        return settings
+        more = 1.0 if fixed else crowded(settings.peak_share) / crowded(expected)
+        return settings.varied(steps=min(4 * math.ceil(more * settings.steps / 4), RANGES["steps"][1]))
 
     def follow(self, settings: Numerics) -> Followed:
         """One run, its contact radii expected to be those of the first with as many steps; raises where it fails."""
