@@ -89,16 +89,6 @@ class ContactTooBrief(NotReached):
         super().__init__(f"the contact was over after {steps} steps, at t = {time:.3g} s, sooner than expected; {cure}")
 
 
-class PastTooLarge(NotReached):
-    """So many steps that what the surface remembers of each would not fit into memory."""
-
-    def __init__(self, steps: int, size: float, most: float) -> None:
-        reason = (
-            f"{steps} steps, of which the surface would remember {size / 1e9:.2g} GB: accepted up to {most / 1e9:g}"
-        )
-        super().__init__(f"{reason}; cure: a larger tolerance, fewer numerics.steps, or --method ting where it answers")
-
-
 FINER_STEPS = "an earlier motion.end_time, or more numerics.steps"  # cure where they set how many a contact may take
 
 

@@ -11,8 +11,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from functools import lru_cache, partial
-from itertools import pairwise
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -56,20 +57,53 @@ def march(
 
 def marched(stepper: Stepping, counted: Counted = uncounted) -> March:
     """The same with what takes its steps, each of them ``counted``."""
-    return _Marcher(stepper, counted).run()
+    return record(stepper, _Marcher(stepper, counted).run())
+
+
+class Spent(NamedTuple):
+    """Energies of one step, J: heat, what the scheme leaves unaccounted for, work that does not reach the body."""
+
+    heat: float
+    lost: float
+    between: float
+
+    @classmethod
+    def of(cls, stepper: Stepping, before: State, step: Step) -> Spent:
+        """Of a step from a state that still has its memory."""
+        first, then, length = before.memory, step.state.memory, step.length
+        lost = stepper.lost(first, then, length)
+        return cls(stepper.dissipated(first, then, length), lost, stepper.between(before, step))
+
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """What a march went through: its ``states``, the first at touch, ``steps`` between them, and what each ``spent``;
+    ``held``: what the body stored at touch, J; whether it ``separated``, and when, to what spread, s.
+    """
+
+    states: Sequence[State]
+    steps: Sequence[Step]
+    spent: Sequence[Spent]
+    held: float
+    separated: bool
+    spread: float
 
 
 class _Marcher:
-    """The loop: what stays the same through an impact is held here, what changes is passed and returned."""
+    """The loop: what stays the same through an impact is held here, what changes is passed and returned.
 
-    def __init__(self, stepper: Stepping, counted: Counted) -> None:
-        self.counted = counted
+    What a body remembers is larger than all else; unless each state ``keeps`` its own, the last one alone has it.
+    """
+
+    def __init__(self, stepper: Stepping, counted: Counted, keeps: bool = False) -> None:
+        self.counted, self.keeps = counted, keeps
         self.stepper, self.strike, self.numerics = stepper, stepper.strike, stepper.numerics
         self.shortest = stepper.shortest * self.numerics.contact_time
 
-    def run(self) -> March:
+    def run(self) -> Way:
         strike = self.strike
-        states, steps = [self.stepper.touch()], list[Step]()
+        states, steps, spent = [self.stepper.touch()], list[Step](), list[Spent]()
+        held = self.stepper.stored(states[0].memory)
         separated = False
         free_fluid = strike.relaxation.equilibrium == 0 and strike.gravity == 0
         resting = AT_REST * strike.velocity if free_fluid else 0.0
@@ -95,10 +129,14 @@ class _Marcher:
                 states += self._flight(states[-1], left or 0.0) if separated else self._rest(states[-1], resting)
                 break
             self.counted(1.0)
+            spent.append(Spent.of(self.stepper, states[-1], step))
+            if not self.keeps:
+                states[-1] = states[-1]._replace(memory=None)
+                steps[-1:] = [last._replace(state=states[-1]) for last in steps[-1:]]
             steps.append(step)
             states.append(step.state)
         spread = float(np.ptp(predicted[-PREDICTIONS:])) + unseen if separated else 0.0
-        return record(self.stepper, states, steps, separated, spread)
+        return Way(states, steps, spent, held, separated, spread)
 
     def _time_left(self, steps: Sequence[Step]) -> float | None:
         """Time to separation while the striker leaves, else None."""
@@ -241,10 +279,9 @@ def _inverse_smoothstep(value: float) -> float:
     return 0.5 - math.sin(math.asin(1 - 2 * value) / 3)
 
 
-def record(
-    stepper: Stepping, states: Sequence[State], steps: Sequence[Step], separated: bool, end_spread: float
-) -> March:
-    """Gather what a march leaves behind; ``end_spread`` as in :class:`fe_contact.steppers.steps.March`."""
+def record(stepper: Stepping, way: Way) -> March:
+    """Gather what a march leaves behind; its snapshots are of the same march once more."""
+    states, steps = way.states, way.steps
     works, last = [step.work for step in steps], states[len(steps)]
     return March(
         time=np.array([state.time for state in states]),
@@ -253,10 +290,10 @@ def record(
         first_force=stepper.first_force,
         radius_time=np.array([step.radius_time for step in steps]),
         radius=np.array([step.radius for step in steps]),
-        separated=separated,
-        photograph=partial(stepper.snapshots, steps),
-        energy=_energy(stepper, states, steps),
-        end_spread=end_spread,
+        separated=way.separated,
+        photograph=lambda: stepper.snapshots(_Marcher(stepper, uncounted, keeps=True).run().steps),
+        energy=_energy(stepper, way),
+        end_spread=way.spread,
         work=Work(len(steps), sum(w.contact_problems for w in works), sum(w.iterations for w in works)),
         memory=last.memory,
         memory_time=last.time,
@@ -277,29 +314,28 @@ def onwards(later: Energies, earlier: Energies, flight_heat: float) -> dict[str,
     return balanced({**later, **spent, "in": given})
 
 
-def _energy(stepper: Stepping, states: Sequence[State], steps: Sequence[Step]) -> dict[str, float]:
+def _energy(stepper: Stepping, way: Way) -> dict[str, float]:
     """Terms in J, each zero where a model without inertia knows none.
 
     ``in``: with what the body still stored at touch. ``contact``: the striker's work that does not reach the body, none
     of it where steps are short and the penalty is stiff. ``numerical``: what scheme and mesh leave unaccounted for.
     """
-    strike, scheme, last = stepper.strike, stepper.scheme, states[-1]
-    taken = list(zip(pairwise(states[: len(steps) + 1]), steps, strict=True))
+    strike, scheme, states, steps = stepper.strike, stepper.scheme, way.states, way.steps
+    ended, last = states[len(steps)], states[-1]
     jumps = np.diff([state.velocity for state in states[: len(steps) + 1]])
-    lost = sum(stepper.lost(before.memory, after.memory, step.length) for (before, after), step in taken)
-    heats = [stepper.dissipated(before.memory, after.memory, step.length) for (before, after), step in taken]
-    stored = stepper.stored(last.memory)
-    crept = _crept(stored, heats[-1] / steps[-1].length, last.time - states[len(steps)].time)
+    heat, lost, between = (sum(terms) for terms in zip(*way.spent, strict=True))
+    stored = stepper.stored(ended.memory)
+    crept = _crept(stored, way.spent[-1].heat / steps[-1].length, last.time - ended.time)
     return balanced(
         {
             "in": 0.5 * strike.mass * strike.velocity**2
             + strike.mass * strike.gravity * (last.depth - strike.depth)
-            + stepper.stored(states[0].memory),
+            + way.held,
             "out": 0.5 * strike.mass * last.velocity**2,
             "stored": stored - crept,
-            "viscous": sum(heats) + crept,
+            "viscous": heat + crept,
             "radiated": 0.0,
-            "contact": sum(stepper.between(before, step) for (before, _), step in taken),
+            "contact": between,
             "numerical": lost + (scheme.lever - 0.5) * strike.mass * float(jumps @ jumps),
         }
     )

@@ -38,7 +38,7 @@ from fe_contact.bodies.memory import StepLaw, SurfaceBody, SurfaceMemory, area_w
 from fe_contact.bodies.pressing import BEYOND, EDGE_WINDOW, RESCALINGS
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactProblem, ContactSolution, PressedSurface, Touching, count, moved
-from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall, PastTooLarge
+from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
 from fe_contact.schemes.base import SCHEMES, MemoryScheme
 from fe_contact.settings import Numerics
 from fe_contact.steppers.steps import (
@@ -61,7 +61,6 @@ LEAST_KEPT = 0.05  # share of its area that a contact is expected to keep over a
 PATIENCE = 8  # rescalings after which the window widens by half each time: the edge may jitter in the last tail
 MEMORY_POINTS = 1000  # radii at which the surface's past is remembered, at least
 POINTS_A_STEP = 8  # of them: every step reads between them, and what that errs by adds up under a dashpot
-REMEMBERED, MOST_REMEMBERED = 16, 4e9  # bytes: of two fields at a point, a step and a branch, and in all
 MEMORY_REACH = 1.25  # memory extends to this multiple of the expected contact radius
 COARSE = np.geomspace(1e-6, 1.0, 200)  # where, in units of the memory's reach, the first contact is looked for
 CLOSING = 1.5  # power of the time left with which the gap closes before an edge
@@ -74,8 +73,7 @@ class Stepper(OfSurface):
     """Takes steps: what stays the same through an impact is held here, what changes is passed and returned.
 
     The memory also keeps the pressure that each of its branches carries, for the energies.
-    ``expected``: contact radii, m, of the first steps where a like march has told them, for as many as it did. Raises
-    PastTooLarge.
+    ``expected``: contact radii, m, of the first steps where a like march has told them, for as many as it did.
     """
 
     shortest = 3e-4
@@ -94,9 +92,6 @@ class Stepper(OfSurface):
         points = max(MEMORY_POINTS, POINTS_A_STEP * numerics.steps)
         if isinstance(strike.memory, SurfaceMemory):  # of a contact before, in other steps perhaps
             points = strike.memory.areas.size
-        remembered = REMEMBERED * (1 + len(strike.relaxation.moduli)) * points * numerics.steps
-        if remembered > MOST_REMEMBERED:
-            raise PastTooLarge(numerics.steps, remembered, MOST_REMEMBERED)
         self.radii = graded(MEMORY_REACH * numerics.contact_radius, points)
         self.heights = strike.height(self.radii)
         self.areas = area_weights(self.radii)

@@ -501,13 +501,14 @@ def test_condensing_to_the_surface_changes_nothing(
     condensed = half_space.surface(0.3, numerics)
     whole = half_space._whole(0.3, numerics.elements_per_contact, numerics.order, numerics.far_radius)
     expected = march(strike, condensed, numerics)
+    seen = expected.snapshots  # made by marching once more, as the march was
     monkeypatch.setattr("fe_contact.contact.enforcement.corrected.solve", solve_whole)
     found = march(strike, Uncondensed(whole.operator, basis=whole.basis), numerics)
     assert found.work.steps == expected.work.steps >= 8
     for name in ("time", "depth", "impulse", "radius"):
         reference = getattr(expected, name)
         np.testing.assert_allclose(getattr(found, name), reference, rtol=0, atol=1e-10 * np.abs(reference).max())
-    for whole, small in zip(found.snapshots, expected.snapshots, strict=True):
+    for whole, small in zip(found.snapshots, seen, strict=True):
         # steep at the edge, where rounding moves the points
         np.testing.assert_allclose(whole.pressure, small.pressure, rtol=0, atol=1e-7 * small.pressure.max())
 

@@ -18,12 +18,11 @@ from fe_contact.budget.budget import TotalWork
 from fe_contact.budget.certify import certify
 from fe_contact.budget.runs import operations
 from fe_contact.dynamics import march
-from fe_contact.errors import BodyTooFine, ContactTooBrief, PastTooLarge, TooManySteps, WavesTooDear
+from fe_contact.errors import BodyTooFine, ContactTooBrief, TooManySteps, WavesTooDear
 from fe_contact.march import impact
 from fe_contact.march.impacts import Grounded
 from fe_contact.methods import simulate
 from fe_contact.settings import Numerics
-from fe_contact.steppers import scaled_surface
 from fe_contact.steppers.flat_end import FlatEnd
 from fe_contact.steppers.struck import Deformable
 from fe_contact.targets.base import struck
@@ -50,12 +49,6 @@ def test_a_body_too_fine_is_refused_before_its_matrix(name: str, bound: str, mon
     monkeypatch.setattr(bound, 70)
     with pytest.raises(BodyTooFine, match=r" 70.*cure: .*numerics.elements_per_contact, numerics.order"):
         simulate(Scene.load(name), "fe", {"elements_per_contact": 7.7})
-
-
-def test_a_past_too_large_for_memory_is_refused_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(scaled_surface, "MOST_REMEMBERED", 1e6)
-    with pytest.raises(PastTooLarge, match=r"40 steps, .* remember 0\.0013 GB: .* up to 0.001; cure: .*--method ting"):
-        simulate(Scene.load("polymer-sphere"), "fe", {"steps": 40})
 
 
 @pytest.mark.parametrize("striker", [{"shape": "punch", "radius": 0.006}, ROUNDED], ids=lambda one: one["shape"])
