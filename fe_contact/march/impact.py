@@ -76,7 +76,7 @@ class Spent(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Way:
+class Passage:
     """What a march went through: its ``states``, the first at touch, ``steps`` between them, and what each ``spent``;
     ``held``: what the body stored at touch, J; whether it ``separated``, and when, to what spread, s.
     """
@@ -100,7 +100,7 @@ class _Marcher:
         self.stepper, self.strike, self.numerics = stepper, stepper.strike, stepper.numerics
         self.shortest = stepper.shortest * self.numerics.contact_time
 
-    def run(self) -> Way:
+    def run(self) -> Passage:
         strike = self.strike
         states, steps, spent = [self.stepper.touch()], list[Step](), list[Spent]()
         held = self.stepper.stored(states[0].memory)
@@ -136,7 +136,7 @@ class _Marcher:
             steps.append(step)
             states.append(step.state)
         spread = float(np.ptp(predicted[-PREDICTIONS:])) + unseen if separated else 0.0
-        return Way(states, steps, spent, held, separated, spread)
+        return Passage(states, steps, spent, held, separated, spread)
 
     def _time_left(self, steps: Sequence[Step]) -> float | None:
         """Time to separation while the striker leaves, else None."""
@@ -279,9 +279,9 @@ def _inverse_smoothstep(value: float) -> float:
     return 0.5 - math.sin(math.asin(1 - 2 * value) / 3)
 
 
-def record(stepper: Stepping, way: Way) -> March:
+def record(stepper: Stepping, passage: Passage) -> March:
     """Gather what a march leaves behind; its snapshots are of the same march once more."""
-    states, steps = way.states, way.steps
+    states, steps = passage.states, passage.steps
     works, last = [step.work for step in steps], states[len(steps)]
     return March(
         time=np.array([state.time for state in states]),
@@ -290,10 +290,10 @@ def record(stepper: Stepping, way: Way) -> March:
         first_force=stepper.first_force,
         radius_time=np.array([step.radius_time for step in steps]),
         radius=np.array([step.radius for step in steps]),
-        separated=way.separated,
+        separated=passage.separated,
         photograph=lambda: stepper.snapshots(_Marcher(stepper, uncounted, keeps=True).run().steps),
-        energy=_energy(stepper, way),
-        end_spread=way.spread,
+        energy=_energy(stepper, passage),
+        end_spread=passage.spread,
         work=Work(len(steps), sum(w.contact_problems for w in works), sum(w.iterations for w in works)),
         memory=last.memory,
         memory_time=last.time,
@@ -314,23 +314,23 @@ def onwards(later: Energies, earlier: Energies, flight_heat: float) -> dict[str,
     return balanced({**later, **spent, "in": given})
 
 
-def _energy(stepper: Stepping, way: Way) -> dict[str, float]:
+def _energy(stepper: Stepping, passage: Passage) -> dict[str, float]:
     """Terms in J, each zero where a model without inertia knows none.
 
     ``in``: with what the body still stored at touch. ``contact``: the striker's work that does not reach the body, none
     of it where steps are short and the penalty is stiff. ``numerical``: what scheme and mesh leave unaccounted for.
     """
-    strike, scheme, states, steps = stepper.strike, stepper.scheme, way.states, way.steps
+    strike, scheme, states, steps = stepper.strike, stepper.scheme, passage.states, passage.steps
     ended, last = states[len(steps)], states[-1]
     jumps = np.diff([state.velocity for state in states[: len(steps) + 1]])
-    heat, lost, between = (sum(terms) for terms in zip(*way.spent, strict=True))
+    heat, lost, between = (sum(terms) for terms in zip(*passage.spent, strict=True))
     stored = stepper.stored(ended.memory)
-    crept = _crept(stored, way.spent[-1].heat / steps[-1].length, last.time - ended.time)
+    crept = _crept(stored, passage.spent[-1].heat / steps[-1].length, last.time - ended.time)
     return balanced(
         {
             "in": 0.5 * strike.mass * strike.velocity**2
             + strike.mass * strike.gravity * (last.depth - strike.depth)
-            + way.held,
+            + passage.held,
             "out": 0.5 * strike.mass * last.velocity**2,
             "stored": stored - crept,
             "viscous": heat + crept,
