@@ -15,7 +15,7 @@ from itertools import islice
 from pathlib import Path
 from typing import ClassVar, Generic, Protocol, TypeVar, get_args, get_type_hints
 
-from lumped.errors import SHOWN_FAULTS, BadInput, Fault, nearest, shown
+from lumped.errors import SHOWN_FAULTS, BadInput, Fault, as_number, nearest, shown
 from lumped.schema import Table
 
 UNKNOWN_KEY = "unknown key"
@@ -76,6 +76,7 @@ class Number:
         return {"type": "number", "exclusiveMinimum" if self.above else "minimum": self.low, "maximum": self.high}
 
     def read(self, value: object) -> float:
+        value = as_number(value)
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise ValueError
         # Compared before conversion: an integer beyond 1e308 has no float.
@@ -100,6 +101,7 @@ class Count:
         return {"type": "integer", "minimum": self.low, "maximum": self.high}
 
     def read(self, value: object) -> int:
+        value = as_number(value)
         if isinstance(value, bool) or not isinstance(value, int) or not self.low <= value <= self.high:
             raise ValueError
         return value
