@@ -223,8 +223,17 @@ def test_an_empty_law_misses_its_name() -> None:
     """Masses alone have no other way to answer; without a law at all it is the shape that is missing."""
     masses = {"name": "two", "striker": {"mass": 1.0, "velocity": 1.0}}
     assert ["law.name: missing" in fault for fault in faults(masses | {"law": {}})] == [True]
-    assert faults(masses | {"law": 5.0}) == ["scene.toml: law: not a table"]
+    assert faults(masses | {"law": 5.0}) == ["scene.toml: law: not a table; accepted: its keys below [law]"]
     assert any("striker.shape: missing" in fault for fault in faults(masses))
+
+
+def test_a_misspelt_material_leads_to_its_table() -> None:
+    table = copy.deepcopy(SOLID)
+    table["target"]["materials"] = table["target"].pop("material")
+    unknown, missing = faults(table)
+    assert unknown.startswith("scene.toml: target.materials: unknown key; ")
+    assert unknown.endswith("; did you mean material?")
+    assert missing == "scene.toml: target.material: missing; a scene needs this table"
 
 
 def test_what_is_not_built_yet_says_what_is() -> None:
