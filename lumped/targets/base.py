@@ -163,7 +163,7 @@ class Target(Record, ABC):
         """What is wrong with a striker of this shape that has a material as the target has, with inertia or without."""
         if self.deformable and self.yielding_strikers:
             return []
-        reason = f"a {self.name} is struck by a rigid body in this version; leave it out"
+        reason = f"what strikes a target of shape {self.name} is rigid in this version; leave it out"
         return [Fault(source, "striker.material", reason)]
 
     def whole_mass(self, density: float) -> float | None:
