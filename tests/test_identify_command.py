@@ -112,6 +112,7 @@ def test_finite_elements_correct_the_law(
         (["--free", FREE, "--sample", "7"], "--sample: 7: accepted a whole number from 100 to 1000000"),
         (["--free", FREE, "--method", "feme"], "--method: feme: accepted ting, fe"),
         (["--free", f"{FREE},nu"], "--free: the force of this scene tells only a combination of target.material."),
+        (["--free", FREE, "--tolerance", "5"], "--tolerance: 5.0: accepted a number from 1e-06 to 0.1"),
         (["--free", FREE, "--corner", "-3"], "--corner: -3: accepted a frequency above zero, Hz"),
         (["--free", FREE, "--set", "striker.mass=0.5"], "< 0; cure: check mass"),
         (["--free", FREE, "--set", "striker.mas=50.0"], "striker.mas: unknown key"),

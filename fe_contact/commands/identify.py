@@ -103,9 +103,9 @@ def _reference(args: argparse.Namespace, progress: Progress) -> Reference | None
     """What corrects Ting's law: finite elements, or None. Raises BadInput."""
     if args.method not in METHODS:
         raise BadInput(Fault("--method", "", f"{args.method}: accepted {', '.join(METHODS)}"))
+    _, given = base.read_scene(args)
     if args.method != FE:
         return None
-    _, given = base.read_scene(args)
 
     def reference(scene: Scene) -> History:
         found = simulate(scene, FE, given, progress=progress)
