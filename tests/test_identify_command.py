@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -13,7 +14,10 @@ import pytest
 
 from fe_contact import run
 from fe_contact.cli import main
+from fe_contact.commands.identify import shown as on_terminal
+from fe_contact.studies.identify_chart import told as in_chart
 from lumped import Scene, identify, laws, simulate
+from lumped.identify import Interval
 from lumped.result.history import History
 from lumped.result.score import Curve
 
@@ -65,6 +69,15 @@ def test_two_curves_tell_the_polymer(
     assert found.name == "found", "called as its file is: its results go beside those of the first guess"
     assert main(["run", str(scene), "--method", "ting", "--out", str(tmp_path / "run"), "--quiet"]) == 0
     assert {path.name for path in where.iterdir()} == {f"identified.{kind}" for kind in ("json", "csv", "svg", "png")}
+
+
+@pytest.mark.parametrize("half", [3e-7, 2e-4, 0.1])
+def test_the_ends_of_an_interval_are_told_from_the_value(half: float) -> None:
+    """However narrow it is, on the terminal and in the chart."""
+    one = Interval(1.2345678e6, 1.2345678e6 * (1.0 - half), 1.2345678e6 * (1.0 + half), 0.9, "Pa")
+    for said in (on_terminal(one), in_chart(one, False)):
+        value, low, high = (float(number) for number in re.findall(r"\d+\.?\d*(?:e[+-]\d+)?(?! %)\b", said)[:3])
+        assert low < value < high, said
 
 
 def test_a_person_reads_intervals(
