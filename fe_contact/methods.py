@@ -214,7 +214,7 @@ def _asked(scene: Scene, name: str, given: Given, progress: Progress) -> tuple[W
 def _elements(scene: Scene, given: Given, tolerance: float, answer: Result | None) -> Weighed:
     """Finite elements as they are expected to be, beside a law that answers or alone."""
     if not scene.has_geometry:
-        return Weighed(FE, None, None, "need a shape and a material")
+        return Weighed(FE, None, None, "needs a shape and a material")
     if answer is not None:
         return Weighed(FE, tolerance, LOADING, "no better, and loading them takes longer")
     from fe_contact.reference import expected  # late: a law needs no finite elements

@@ -11,7 +11,7 @@ from dataclasses import asdict, dataclass, replace
 from itertools import islice
 from typing import Annotated, Any, Self
 
-from lumped.errors import SHOWN_FAULTS, BadInput, Fault, nearest, shown
+from lumped.errors import SHOWN_FAULTS, BadInput, Fault, as_number, nearest, shown
 from lumped.schema import Table
 from lumped.schema.keys import Key, keys_of
 from lumped.schema.members import available
@@ -42,6 +42,7 @@ class Range:
 
     def read(self, value: object) -> float:
         """The number; raises ValueError."""
+        value = as_number(value)
         if isinstance(value, bool) or not isinstance(value, int | float) or not self.low <= value <= self.high:
             raise ValueError
         if self.whole and not float(value).is_integer():

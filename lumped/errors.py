@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from datetime import date, time
 from difflib import get_close_matches
+from numbers import Number
 from pathlib import Path
 from typing import ClassVar
 
@@ -121,10 +123,18 @@ def shortened(text: str, most: int = SHOWN_CHARACTERS) -> str:
     return text if len(text) <= most else text[: most - 3] + "..."
 
 
+def as_number(value: object) -> object:
+    """A number of numpy's, as scripts have them, as one of Python's; else the value itself."""
+    item = getattr(value, "item", None)
+    return item() if isinstance(value, Number) and callable(item) else value
+
+
 def shown(value: object) -> str:
     """A value as the user wrote it, about, and not at length."""
+    own = as_number(value)
     try:
-        return shortened(str(value).lower() if isinstance(value, bool) else repr(value))
+        written_so = str(own) if isinstance(own, date | time) else repr(own)
+        return shortened(written_so.lower() if isinstance(own, bool) else written_so)
     except ValueError:  # Python prints no number of more than 4300 digits
         return "a number of thousands of digits"
 

@@ -103,7 +103,8 @@ def test_a_script_has_the_numbers_of_its_scene(tmp_path: Path) -> None:
         (("steel-ball-plastic", "--to", "ngsolve"), "model.plasticity"),
         (("polymer-sphere-finite", "--to", "calculix", "--depth", "1e-5"), "model.kinematics"),
         (("polymer-sphere", "--to", "calculix"), "--depth"),
-        (("polymer-layer", "--to", "ngsolve", "--depth", "nan"), "depth"),
+        (("polymer-layer", "--to", "ngsolve", "--depth", "nan"), "--depth: nan: accepted a number"),
+        (("polymer-layer", "--to", "ngsolve", "--depth", "1"), "--depth: 1: accepted below the "),
     ],
 )
 def test_what_another_program_is_not_told_is_refused(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -13,7 +14,10 @@ import pytest
 
 from fe_contact import run
 from fe_contact.cli import main
+from fe_contact.commands.identify import shown as on_terminal
+from fe_contact.studies.identify_chart import told as in_chart
 from lumped import Scene, identify, laws, simulate
+from lumped.identify import Interval
 from lumped.result.history import History
 from lumped.result.score import Curve
 
@@ -68,6 +72,15 @@ def test_two_curves_tell_the_polymer(
     assert {path.name for path in where.iterdir()} == {f"identified.{kind}" for kind in ("json", "csv", "svg", "png")}
 
 
+@pytest.mark.parametrize("half", [3e-7, 2e-4, 0.1])
+def test_the_ends_of_an_interval_are_told_from_the_value(half: float) -> None:
+    """However narrow it is, on the terminal and in the chart."""
+    one = Interval(1.2345678e6, 1.2345678e6 * (1.0 - half), 1.2345678e6 * (1.0 + half), 0.9, "Pa")
+    for said in (on_terminal(one), in_chart(one, False)):
+        value, low, high = (float(number) for number in re.findall(r"\d+\.?\d*(?:e[+-]\d+)?(?! %)\b", said)[:3])
+        assert low < value < high, said
+
+
 def test_a_person_reads_intervals(
     curves: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -113,6 +126,7 @@ def test_finite_elements_correct_the_law(
         (["--free", FREE, "--sample", "7"], "--sample: 7: accepted a whole number from 100 to 1000000"),
         (["--free", FREE, "--method", "feme"], "--method: feme: accepted ting, fe"),
         (["--free", f"{FREE},nu"], "--free: the force of this scene tells only a combination of target.material."),
+        (["--free", FREE, "--tolerance", "5"], "--tolerance: 5.0: accepted a number from 1e-06 to 0.1"),
         (["--free", FREE, "--corner", "-3"], "--corner: -3: accepted a frequency above zero, Hz"),
         (["--free", FREE, "--set", "striker.mass=0.5"], "< 0; cure: check mass"),
         (["--free", FREE, "--set", "striker.mas=50.0"], "striker.mas: unknown key"),

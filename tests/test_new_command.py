@@ -12,6 +12,7 @@ import pytest
 
 from fe_contact.cli import main
 from fe_contact.commands.new import MATERIALS, commented, first
+from fe_contact.reference import check
 from lumped import Scene, laws, simulate
 from lumped.errors import BadInput
 from lumped.materials.networks import NETWORKS
@@ -54,6 +55,13 @@ def test_every_pair_that_is_packaged_can_be_begun_and_others_are_refused_for_the
     for pair, material in zip(begun, cycle(MATERIALS), strict=False):
         assert "rod" in pair or not refused(*pair, material)  # a rod's waves are those of an elastic one
     assert {*NETWORKS.names} - {*MATERIALS} == {"measured"}
+
+
+@pytest.mark.parametrize("material", [name for name in MATERIALS if name != "kelvin_voigt"])
+def test_a_rod_ends_so_that_its_material_can_be_followed(material: str) -> None:
+    """An absorbing end lets out elastic waves only; a dashpot in parallel has no wave speed at any end."""
+    for striker in ("sphere", "punch"):
+        check(Scene.from_dict(tomllib.loads(written(striker, "rod", material))), {})
 
 
 def test_a_default_written_behind_a_sign_is_the_default() -> None:

@@ -15,13 +15,17 @@ from fe_contact.budget.refine import ImpactWay, refine
 from fe_contact.budget.several import Row, Several
 from fe_contact.march.impacts import UNFOLLOWED
 from fe_contact.progress import Count, Progress
-from fe_contact.settings import Given, Numerics
+from fe_contact.settings import RANGES, Given, Numerics
 from lumped.numbers import Clock
 from lumped.progress import counting_steps
 from lumped.result.result import UNITS, IndentationLeft, Result, largest_bar, provenance, unmet
 from lumped.scene.scene import Scene
 
 CURE = "cure: a larger tolerance, or fewer numerics of your own"
+NONE_MET = (  # as where a dashpot alone is watched long after the peak
+    "no tolerance that is accepted is met; cure: a shorter motion.end_time where the contact does not end, or fewer "
+    "numerics of your own"
+)
 
 Answer = TypeVar("Answer", bound=Solution, covariant=True)
 AnyAnswer = TypeVar("AnyAnswer", bound=Solution)
@@ -127,5 +131,7 @@ def _missed(scene: Scene, solved: SolvedBy[Solution], found: Solution) -> list[s
         return []
     largest = max(largest_bar(part) for part in found.parts)
     met = 10.0 ** (math.ceil(10.0 * math.log10(largest)) / 10.0) if math.isfinite(largest) else None  # rounded up
+    if met is not None and met > RANGES["tolerance"][1]:
+        return [part for part in (*missed, solved.refused, NONE_MET) if part]
     said = [*missed, solved.refused, "" if met is None else f"a tolerance of {met:.2g} is met", CURE]
     return [part for part in said if part]

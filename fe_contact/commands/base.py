@@ -232,7 +232,8 @@ def progress_of(args: argparse.Namespace) -> Progress:
         try:
             listeners.append(log_to(Path(args.log)))
         except (OSError, ValueError) as failure:  # a name with a null character is none
-            raise BadInput(Fault("--log", args.log, f"{failure}: accepted a file that can be written")) from None
+            reason = getattr(failure, "strerror", None) or failure
+            raise BadInput(Fault("--log", args.log, f"{reason}; accepted: a file that can be written")) from None
     if sys.stderr.isatty() and not args.quiet:
         listeners.append(terminal())
     return to_all(listeners)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 from fe_contact.commands import base
+from lumped.errors import BadInput
 from lumped.result.folder import publish
 from lumped.schema.members import available
 
@@ -24,7 +26,11 @@ def execute(args: argparse.Namespace) -> int:
     if args.depth is not None:
         indenter, table = base.read_indenter(args)
         depth = base.number(args.depth, "--depth")
-        case = StaticCase.of(indenter, depth, args.refined, settings(table, None, indenter.source))
+        try:
+            case = StaticCase.of(indenter, depth, args.refined, settings(table, None, indenter.source))
+        except BadInput as bad:
+            faults = (replace(one, source="--depth") if one.source == "--depths" else one for one in bad.faults)
+            raise BadInput(faults) from bad
         text, name = program.static(case), f"{case.name}-depth{program.suffix}"
     else:
         scene, table = base.read_scene(args)

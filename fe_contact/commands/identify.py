@@ -103,9 +103,9 @@ def _reference(args: argparse.Namespace, progress: Progress) -> Reference | None
     """What corrects Ting's law: finite elements, or None. Raises BadInput."""
     if args.method not in METHODS:
         raise BadInput(Fault("--method", "", f"{args.method}: accepted {', '.join(METHODS)}"))
+    _, given = base.read_scene(args)
     if args.method != FE:
         return None
-    _, given = base.read_scene(args)
 
     def reference(scene: Scene) -> History:
         found = simulate(scene, FE, given, progress=progress)
@@ -147,10 +147,10 @@ def shown(one: Interval, unneeded: bool = False) -> str:
     """A value with its interval; no value where any other fits as well, or none fits best."""
     if one.low is None and one.high is None:
         return f"not told by the curves ({100.0 * one.level:g} %)"
-    low, high = ("open" if end is None else f"{end:.5g}" for end in (one.low, one.high))
+    low, high = ("open" if end is None else f"{end:.{max(one.digits, 5)}g}" for end in (one.low, one.high))
     if unneeded:
         return f"none (up to {high}, {100.0 * one.level:g} %) {one.unit}".rstrip()
-    return f"{one.value:.6g} ({low} to {high}, {100.0 * one.level:g} %) {one.unit}".rstrip()
+    return f"{one.value:.{max(one.digits, 6)}g} ({low} to {high}, {100.0 * one.level:g} %) {one.unit}".rstrip()
 
 
 def _check_written(path: Path | None) -> None:

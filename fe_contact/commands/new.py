@@ -76,6 +76,8 @@ def first(striker: str, target: str, material: str) -> Table:
         own = {key: value for key, value in of_striker[0]["striker"].items() if key not in (*STRIKER_KEYS, "material")}
         stays = {key: value for key, value in tables["striker"].items() if key in (*STRIKER_KEYS, "material")}
         tables["striker"] = own | stays
+    if material != "elastic" and tables["target"].get("end") == "absorbing":
+        tables["target"]["end"] = "free"  # waves of what relaxes are not let out
     for body in tables.values():
         known = body.get("material")
         if known is not None and known["law"] != material:

@@ -26,7 +26,7 @@ def plot_identified(found: Identified, where: Path) -> tuple[Path, Path]:
     curves = found.curves[:MOST]
     columns = min(COLUMNS, len(curves))
     rows = -(-len(curves) // columns)
-    lines = [f"{name} = {_shown(one, name in found.unneeded)}" for name, one in found.parameters.items()]
+    lines = [f"{name} = {told(one, name in found.unneeded)}" for name, one in found.parameters.items()]
     lines.append(_verdict(found))
     if found.posterior is not None:
         lines.append(f"orange, below: where the law lies, {100.0 * LEVEL:g} %")
@@ -52,12 +52,13 @@ def _verdict(found: Identified) -> str:
     return f"{found.verdict}: {error:.2g} % of the peak is left beside the noise"
 
 
-def _shown(one: Interval, unneeded: bool) -> str:
+def told(one: Interval, unneeded: bool) -> str:
+    """A value with its interval, in prefixed units; no value where any other fits as well."""
     if unneeded:
         high = "open" if one.high is None else readable(one.high, one.unit, 3)
         return f"none, {100.0 * one.level:g} % up to {high}"
-    low, high = ("open" if end is None else readable(end, one.unit, 3) for end in (one.low, one.high))
-    return f"{readable(one.value, one.unit)}, {100.0 * one.level:g} % from {low} to {high}"
+    low, high = ("open" if end is None else readable(end, one.unit, one.digits) for end in (one.low, one.high))
+    return f"{readable(one.value, one.unit, max(one.digits, 4))}, {100.0 * one.level:g} % from {low} to {high}"
 
 
 def _force(axes: Axes, curve: FittedCurve, law: str, letter: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -39,6 +40,11 @@ class Interval:
         if self.low is None or self.high is None or not self.value:
             return None
         return 0.5 * (self.high - self.low) / abs(self.value)
+
+    @property
+    def digits(self) -> int:
+        """How many significant ones tell the ends from the value; three where one is open, or where they are wide."""
+        return max(3, 2 - math.floor(math.log10(self.share))) if self.share else 3
 
     def holds(self, value: float) -> bool:
         """Whether a value lies within; an open end lets all through."""

@@ -87,6 +87,9 @@ class Scene:
         faults += plasticity_faults(
             self.source, self.model, self.geometry if self.has_geometry else None, self.motion.impacts
         )
+        if self.model.finite and not self.has_geometry:
+            reason = "finite: a law of its own has no body that is strained; accepted: small"
+            faults.append(Fault(self.source, "model.kinematics", reason))
         if self.model.inertia and self.has_geometry:
             faults += flying_faults(self.source, self.geometry, self.mass, self.target_mass)
         if faults:

@@ -52,6 +52,7 @@ SECOND_MASS = Key(Number(LEAST_MASS, 1e12, "kg"), "mass of a free second body", 
 NAME = Key(Text(), "name of the scene", required=False)
 STRIKER_KEYS: Mapping[str, Key] = {"mass": MASS, "velocity": VELOCITY}
 TARGET_KEYS: Mapping[str, Key] = {"mass": SECOND_MASS}
+MISSING_TABLE = "missing; a scene needs this table"
 NAME_KEYS: Mapping[str, Key] = {"name": NAME}
 
 
@@ -230,9 +231,9 @@ class TableReader:
             self.faults.append(fault)
         return str(values.get("name", ""))
 
-    def checked(self, path: str, table: Table, keys: Mapping[str, Key]) -> Table:
-        """The accepted values of a table; what is refused becomes a fault."""
-        values, faults = read_table(self.source, path, table, keys)
+    def checked(self, path: str, table: Table, keys: Mapping[str, Key], beside: tuple[str, ...] = ()) -> Table:
+        """The accepted values of a table, that may hold others `beside` them; what is refused becomes a fault."""
+        values, faults = read_table(self.source, path, table, keys, beside)
         self.faults += (self._led_home(fault) for fault in faults)
         return values
 
@@ -386,7 +387,7 @@ class SceneReader(TableReader):
         if part not in self.raw:
             return {}, None
         (own,) = alternatives(folder, table.get("shape"))
-        values = self.checked(part, rest, {"shape": Key(Member(folder.package)), **common, **own})
+        values = self.checked(part, rest, {"shape": Key(Member(folder.package)), **common, **own}, ("material",))
         shape: str | None = values.pop("shape", None)
         shared = {key: values.pop(key) for key in common if key in values}
         if shape is None or not values.keys() >= {key for key in own if own[key].required}:
@@ -415,6 +416,7 @@ class SceneReader(TableReader):
         if isinstance(value, Mapping):
             return dict(value)
         if not quiet:
-            message = "not a table" if key in place else "missing; a scene needs this table"
-            self.faults.append(Fault(self.source, f"{inside}.{key}".lstrip("."), message))
+            path = f"{inside}.{key}".lstrip(".")
+            message = f"not a table; accepted: its keys below [{path}]" if key in place else MISSING_TABLE
+            self.faults.append(Fault(self.source, path, message))
         return {}

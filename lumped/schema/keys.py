@@ -15,7 +15,7 @@ from itertools import islice
 from pathlib import Path
 from typing import ClassVar, Generic, Protocol, TypeVar, get_args, get_type_hints
 
-from lumped.errors import SHOWN_FAULTS, BadInput, Fault, nearest, shown
+from lumped.errors import SHOWN_FAULTS, BadInput, Fault, as_number, nearest, shown
 from lumped.schema import Table
 
 UNKNOWN_KEY = "unknown key"
@@ -76,6 +76,7 @@ class Number:
         return {"type": "number", "exclusiveMinimum" if self.above else "minimum": self.low, "maximum": self.high}
 
     def read(self, value: object) -> float:
+        value = as_number(value)
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise ValueError
         # Compared before conversion: an integer beyond 1e308 has no float.
@@ -100,6 +101,7 @@ class Count:
         return {"type": "integer", "minimum": self.low, "maximum": self.high}
 
     def read(self, value: object) -> int:
+        value = as_number(value)
         if isinstance(value, bool) or not isinstance(value, int) or not self.low <= value <= self.high:
             raise ValueError
         return value
@@ -221,12 +223,15 @@ ALSO_CALLED: Mapping[str, tuple[str, ...]] = {
 
 
 def read_table(
-    source: str, path: str, table: Mapping[str, object], keys: Mapping[str, Key]
+    source: str, path: str, table: Mapping[str, object], keys: Mapping[str, Key], beside: tuple[str, ...] = ()
 ) -> tuple[Table, list[Fault]]:
-    """Check a table against its keys: the accepted values, and every fault (unknown, missing, refused)."""
+    """Check a table against its keys: the accepted values, and every fault (unknown, missing, refused).
+
+    `beside` these it may hold tables of its own, which others read.
+    """
     values: Table = {}
     strange = islice((name for name in table if name not in keys), SHOWN_FAULTS)
-    faults = [Fault(source, _join(path, name), unknown_key(name, keys)) for name in strange]
+    faults = [Fault(source, _join(path, name), unknown_key(name, keys, beside)) for name in strange]
     for name, key in keys.items():
         if name not in table:
             if key.required:
@@ -249,11 +254,11 @@ def optional(keys: Mapping[str, Key]) -> dict[str, Key]:
     return {name: replace(key, required=False) for name, key in keys.items()}
 
 
-def unknown_key(name: str, names: Iterable[str]) -> str:
-    """What to say of a key which is none of `names`."""
+def unknown_key(name: str, names: Iterable[str], beside: tuple[str, ...] = ()) -> str:
+    """What to say of a key which is none of `names`, nor a table `beside` them."""
     names = sorted(names)
     meant = [key for key in names if name.lower() in ALSO_CALLED.get(key, ())]
-    return f"{UNKNOWN_KEY}; accepted: {', '.join(names)}{nearest(meant[0] if meant else name, names)}"
+    return f"{UNKNOWN_KEY}; accepted: {', '.join(names)}{nearest(meant[0] if meant else name, [*names, *beside])}"
 
 
 def _join(path: str, name: str) -> str:

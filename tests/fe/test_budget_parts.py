@@ -319,14 +319,15 @@ def test_what_one_contact_misses_is_said_without_its_number() -> None:
         assert first == f"{said} 0.001 not reached: duration to 0.01"
 
 
-@pytest.mark.parametrize(("error", "met"), [(1.1e-2, "0.013"), (np.inf, "")])
+@pytest.mark.parametrize(("error", "met"), [(1.1e-2, "0.013"), (2.3, ""), (np.inf, "")])
 def test_the_tolerance_that_is_met_is_said_where_it_is_known(error: float, met: str) -> None:
     """Rounded up to a tenth of a decade."""
     quantity = {name: Quantity(1.0, error if name == "duration" else 1e-4, "") for name in UNITS}
     found: Any = SimpleNamespace(numerics=SimpleNamespace(tolerance=1e-3), parts=(quantity,))
     scene: Any = SimpleNamespace(motion=SimpleNamespace(impacts=1))
     said = "; ".join(solved._missed(scene, SimpleNamespace(refused=""), found))
-    assert ("is met" in said) == bool(met)
+    assert ("a tolerance of " in said) == bool(met)
+    assert ("no tolerance that is accepted is met" in said) == (error == 2.3)
     assert not met or f"a tolerance of {met} is met" in said
 
 

@@ -182,7 +182,10 @@ def test_a_log_that_cannot_be_written_is_refused_before_the_work(
     place: str, empty: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert cli.main(["run", "steel-ball", "--log", place]) == 2
-    assert capsys.readouterr().err.startswith(f"--log: {place}: ")
+    said = capsys.readouterr().err
+    assert said.startswith(f"--log: {place}: ")
+    assert said.endswith("; accepted: a file that can be written\n")
+    assert "Errno" not in said
     assert not list(empty.iterdir())
 
 

@@ -104,6 +104,13 @@ def test_a_law_alone_has_no_inertia_of_bodies() -> None:
     assert "model.inertia" in faults({**BARE, "model": {"inertia": True}})
 
 
+def test_a_law_alone_has_no_body_that_is_strained() -> None:
+    found = faults({**BARE, "model": {"kinematics": "finite"}})
+    assert (
+        found == "scene.toml: model.kinematics: finite: a law of its own has no body that is strained; accepted: small"
+    )
+
+
 @pytest.mark.parametrize("name", ["ting", "mdr", "correspondence"])
 def test_a_law_of_the_half_space_needs_one(name: str) -> None:
     assert "shape" in faults(of_law(name))

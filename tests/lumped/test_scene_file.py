@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import copy
+import json
 import math
 import re
+from datetime import date
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -101,6 +104,22 @@ def test_no_bad_number_passes(key: str, value: object) -> None:
 def test_zero_and_negative_are_refused(key: str) -> None:
     for value in (0.0, -1.0, 0, -3):
         assert any(f"scene.toml: {key}: " in fault for fault in faults(changed(key, value)))
+
+
+@pytest.mark.parametrize("kind", [np.float32, np.float64, np.int64])
+def test_a_script_may_give_numbers_of_numpy(kind: type[np.number[Any]]) -> None:
+    table = changed("striker.velocity", kind(2))
+    table["motion"]["impacts"] = np.int64(1)
+    scene, _ = read(Scene, table, "scene.toml")
+    assert (scene.velocity, scene.motion.impacts) == (2.0, 1)
+    assert json.loads(json.dumps(scene.to_dict()))["striker"]["velocity"] == 2.0
+    (fault,) = faults(changed("striker.velocity", kind(-2)))
+    assert fault.startswith(f"scene.toml: striker.velocity: {kind(-2).item()} is not accepted; accepted: ")
+
+
+def test_a_date_is_told_back_as_it_was_written() -> None:
+    (fault,) = faults(changed("striker.radius", date(1979, 5, 27)))
+    assert fault.startswith("scene.toml: striker.radius: 1979-05-27 is not accepted; accepted: ")
 
 
 @given(st.floats(min_value=0.5, exclude_min=True) | st.floats(max_value=-1.0))
@@ -204,8 +223,17 @@ def test_an_empty_law_misses_its_name() -> None:
     """Masses alone have no other way to answer; without a law at all it is the shape that is missing."""
     masses = {"name": "two", "striker": {"mass": 1.0, "velocity": 1.0}}
     assert ["law.name: missing" in fault for fault in faults(masses | {"law": {}})] == [True]
-    assert faults(masses | {"law": 5.0}) == ["scene.toml: law: not a table"]
+    assert faults(masses | {"law": 5.0}) == ["scene.toml: law: not a table; accepted: its keys below [law]"]
     assert any("striker.shape: missing" in fault for fault in faults(masses))
+
+
+def test_a_misspelt_material_leads_to_its_table() -> None:
+    table = copy.deepcopy(SOLID)
+    table["target"]["materials"] = table["target"].pop("material")
+    unknown, missing = faults(table)
+    assert unknown.startswith("scene.toml: target.materials: unknown key; ")
+    assert unknown.endswith("; did you mean material?")
+    assert missing == "scene.toml: target.material: missing; a scene needs this table"
 
 
 def test_what_is_not_built_yet_says_what_is() -> None:
