@@ -17,6 +17,7 @@ and draws the ratios.
 from __future__ import annotations
 
 import argparse
+import ctypes
 import json
 import math
 import os
@@ -168,7 +169,7 @@ def attempt(scene: Scene, given: Given, most: float = math.inf, repeats: int = 1
         try:
             with at_most(SLACK * most):
                 answer = by_elements(scene, given)
-        except (FeContactError, TooLong) as failure:
+        except (FeContactError, TooLong, ctypes.ArgumentError) as failure:  # which it is where gmsh is called
             return Attempt(None, time.process_time() - start, str(failure) or "dearer")
         spent.append(time.process_time() - start)
     return Attempt(answer, min(spent))
