@@ -61,7 +61,7 @@ def simulate(
 ) -> Result:
     """One impact of ``scene`` by a method; see :func:`fe_contact.run` for the parameters and errors."""
     with faults_of(scene):
-        given, method = settings(table, tolerance, scene.source), method or default(scene)
+        given, method = settings(table, tolerance, scene.source), default(scene) if method is None else method
         if method not in OWN:
             return _lumped(scene, method, given, progress)
         weighing = weigh(scene, given, progress) if method != FE else None

@@ -26,7 +26,7 @@ def execute(args: argparse.Namespace) -> int:
     from fe_contact.methods import default
 
     scene, table = base.read_scene(args)
-    args.method = args.method or default(scene)
+    args.method = default(scene) if args.method is None else args.method
     where = base.folder(args, "run", scene.name)
     scene, taken = _modelled(args, scene, table)
     _check(args, scene)
