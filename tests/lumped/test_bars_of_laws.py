@@ -18,7 +18,7 @@ from scipy.special import beta
 from lumped import Model, Motion, Quantity, Scene, laws, simulate
 from lumped.indentation import FiniteSize, power_law
 from lumped.laws import _force_law, _hereditary
-from lumped.laws._assembly import Answer, bars
+from lumped.laws._assembly import AROUND, BENDS, Answer, bars
 from lumped.numbers import Array
 from lumped.result.history import End
 from lumped.result.result import UNITS, meets
@@ -397,3 +397,10 @@ def test_a_peak_is_sought_no_closer_than_two_integrations_place_it() -> None:
         bar = bars(fine, coarse, 1.0)[0]["peak_time"].error
         assert 0.999 < bar / (apart or 2.0 * slope) < 1.2
         assert len(counts) <= 5
+
+
+@pytest.mark.parametrize("rate", [-3.0, 0.0, 0.4])
+def test_how_a_force_bends_is_told_whatever_its_slope_there(rate: float) -> None:
+    """Of a parabola exactly: of that through 1 + rate t - 2 t^2 over the width that is looked at."""
+    assert BENDS @ (1.0 + rate * AROUND - 2.0 * AROUND**2) == pytest.approx(-2.0, rel=1e-12)
+    assert AROUND[[0, -1]].tolist() == [0.0, 1.0], "all of it"
