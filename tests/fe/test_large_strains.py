@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
@@ -123,6 +124,29 @@ def test_blocks_are_summed_where_they_stand_and_a_definite_matrix_has_their_plac
     definite = pattern.definite.toarray()
     np.testing.assert_array_equal(definite != 0.0, met[np.ix_(free, free)] | np.eye(free.size, dtype=bool))
     assert np.linalg.eigvalsh(definite).min() > 0.0
+
+
+@pytest.mark.parametrize("reached", [1.0, 0.7, 0.3, 1.0 / 16.0, 0.03])
+def test_a_body_is_begun_by_the_most_of_a_depth_halved_again_that_is_reached_at_once(
+    reached: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Down to a sixteenth: where that is out of reach it is lost by name."""
+    depth, lost = 2e-3, EquilibriumLost("it folds")
+
+    def first(_: object, tried: float, *rest: object) -> float:
+        if tried > reached * depth:
+            raise lost
+        return tried / depth
+
+    monkeypatch.setattr(pressing, "pressed_first", first)
+    encounter: Any = SimpleNamespace(skin=SimpleNamespace(size=2))
+    if reached < 1.0 / 16.0:
+        with pytest.raises(EquilibriumLost, match="folds"):
+            pressing._begun(encounter, depth, 500.0, ())
+    else:
+        begun: Any = pressing._begun(encounter, depth, 500.0, ())
+        assert 0.5 * reached < begun <= reached
+        assert math.log2(begun).is_integer()
 
 
 def test_overlap_with_a_circle_has_the_slopes_that_differences_tell() -> None:
