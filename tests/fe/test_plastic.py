@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -600,6 +600,30 @@ def test_bars_of_an_indentation_hold_what_its_settings_err_by(cause: str, known:
     assert np.all(wrong <= found.force_error)
     assert np.all(found.force_error <= 2.0 * wrong)
     assert found.budget[cause] * found.force == pytest.approx(found.force_error, rel=1e-6)
+
+
+def test_a_change_that_vanishes_where_a_force_is_asked_for_errs_there_as_it_does_nearby(
+    known: Callable[..., None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By an error of the mesh whose sign turns at both of the depths, however few they are."""
+    first = 2.0 * yield_depth(0.3)
+    plain, fine = 4.0 / 3.0 * modulus(0.3) * math.sqrt(RADIUS), COARSE | {"steps": 48}
+
+    class Rippled(Known):
+        def settled(self, state: Any, depth: float, *rest: Any) -> Station:
+            found, body = super().settled(state, depth, *rest), cast(Any, self.ground)
+            share = body.stiffness / (4.0 / 3.0 * math.sqrt(body.radius)) - 1.0
+            waved = 1.0 + share * math.sin(math.pi * math.log(self.unit * depth / first))
+            return found._replace(force=found.force * waved / (1.0 + share))
+
+    known(lambda numerics, cut: 0.3 / numerics.elements_per_contact**1.5)
+    monkeypatch.setattr("fe_contact.plastic.course.Presser", Rippled)
+    found = pressed([first, math.e * first], fine)
+    between = pressed([first, math.exp(0.5) * first, math.e * first], fine)
+    wrong = np.abs(between.force / (plain * between.depth**1.5) - 1.0)
+    assert wrong[[0, -1]].max() < 0.2 * wrong[1], "it vanishes there"
+    shares = found.force_error / found.force
+    assert np.all((wrong[1] < shares) & (shares < 3.0 * wrong[1]))
 
 
 def test_a_motion_that_ends_amid_the_contact_is_refused(known: Callable[..., None]) -> None:
