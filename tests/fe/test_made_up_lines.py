@@ -11,7 +11,7 @@ import pytest
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.variation import SAFETY
 from fe_contact.waves.line import AWAY, UNSHOWN, Line, Run, _ended_later
-from fe_contact.waves.line_reading import CLEAR, DEPTH, FORCE, RINGING, TIME, RodReading, _cleaned
+from fe_contact.waves.line_reading import CLEAR, DEPTH, FORCE, RINGING, TIME, RodReading, _bar_ended, _cleaned
 from fe_contact.waves.targets._block import plan
 from lumped import Scene
 
@@ -206,3 +206,23 @@ def test_what_rings_at_both_ends_of_a_contact_is_the_line_beside_it_that_jumps_f
     np.testing.assert_allclose(found[FORCE, first], np.where(rises, 0.0, line(jumps)), atol=1e-9)
     np.testing.assert_allclose(found[FORCE, first + 1], np.where(rises, line(jumps), 0.0), atol=1e-9)
     np.testing.assert_allclose(found[FORCE, np.isin(found[TIME], time)], force, atol=1e-9)
+
+
+@pytest.mark.parametrize(("forces", "end", "drop"), [
+    ([4.0, 4.0, 4.0, 4.0, 2.0, 0.0], 4.0, 4.0),  # the mean of before and behind: a front came with that row
+    ([4.5, 4.0, 3.5, 3.0, 1.25, 0.0], 4.0, 2.5),  # the same of one that falls
+    ([4.0, 4.0, 4.0, 4.0, 4.0, 0.0], 4.7, 4.0),  # a front came between two rows
+    ([5.0, 4.0, 3.0, 2.0, 1.0, 0.0], 4.9, None),  # comes to nothing by itself
+])  # fmt: skip
+def test_a_contact_ends_with_the_front_that_takes_its_force(
+    forces: list[float], end: float, drop: float | None
+) -> None:
+    """Two rows of that time where it drops, from where it was going; in units of a step, one before it has left."""
+    time = np.arange(6.0)
+    rows, found = _bar_ended(np.array([time, 2.0 * time, -time, np.array(forces), 3.0 * time]), 4.7 if drop else end)
+    assert found == end
+    np.testing.assert_allclose(rows[DEPTH], 2.0 * rows[TIME], rtol=1e-12)
+    kept = int(np.ceil(end))
+    ends = [end] if drop is None else [end, end]
+    np.testing.assert_allclose(rows[TIME], [*time[:kept], *ends], rtol=1e-12)
+    np.testing.assert_allclose(rows[FORCE], [*forces[:kept], *([] if drop is None else [drop]), 0.0], atol=1e-12)
