@@ -175,6 +175,16 @@ def test_of_steps_crowded_at_touch_every_one_is_looked_into(steps: int) -> None:
     assert np.all(np.abs(looked - x).min(axis=0) <= 1e-9 * x)
 
 
+@pytest.mark.parametrize("gravity", [1e-6, 1e-2, 9.81])
+def test_a_contact_that_swings_on_its_weight_is_looked_into_at_every_step_however_weak_gravity_is(
+    gravity: float,
+) -> None:
+    """As evenly as the steps lie, here in the root of time, to where it is cut off."""
+    strike = replace(Strike.of(Scene.load("polymer-layer")), gravity=gravity)
+    looked = np.sqrt(replace(bump(64, 0.0), separated=False, strike=strike).shares)
+    np.testing.assert_allclose(looked, np.linspace(0.0, 1.0, looked.size), atol=1e-12)
+
+
 @pytest.mark.parametrize("place", [0.07, 0.31, 0.5, 0.64, 0.93])
 def test_the_peak_of_a_quartic_is_found_by_interpolation_and_by_fit(place: float) -> None:
     def quartic(x: np.ndarray) -> np.ndarray:
