@@ -165,11 +165,24 @@ def test_a_peak_soon_after_the_touch_is_seen_where_the_steps_are_crowded_there(p
 
 @pytest.mark.parametrize("steps", [100, 1000])
 def test_of_steps_crowded_at_touch_every_one_is_looked_into(steps: int) -> None:
-    """However many there are: a force may peak within any of them."""
+    """However many there are: a force may peak within any of them, or, at a corner, where two of them meet."""
     x = np.append(0.0, np.geomspace(1e-4, 1.0, steps))
     curve = replace(bump(steps, 0.0), x=x)
     begin, end = x[:-1] ** 2 * (1.0 + 1e-9), x[1:] ** 2 * (1.0 - 1e-9)
     assert np.all(curve.shares.searchsorted(end) > curve.shares.searchsorted(begin))
+    assert curve.shares[[0, -1]] == pytest.approx([0.0, 1.0], abs=1e-15)
+    looked = np.sqrt(curve.shares)[:, np.newaxis]
+    assert np.all(np.abs(looked - x).min(axis=0) <= 1e-9 * x)
+
+
+@pytest.mark.parametrize("gravity", [1e-6, 1e-2, 9.81])
+def test_a_contact_that_swings_on_its_weight_is_looked_into_at_every_step_however_weak_gravity_is(
+    gravity: float,
+) -> None:
+    """As evenly as the steps lie, here in the root of time, to where it is cut off."""
+    strike = replace(Strike.of(Scene.load("polymer-layer")), gravity=gravity)
+    looked = np.sqrt(replace(bump(64, 0.0), separated=False, strike=strike).shares)
+    np.testing.assert_allclose(looked, np.linspace(0.0, 1.0, looked.size), atol=1e-12)
 
 
 @pytest.mark.parametrize("place", [0.07, 0.31, 0.5, 0.64, 0.93])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
@@ -9,6 +10,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from skfem import MeshTri
 
 from fe_contact import large_strains, run
@@ -101,6 +104,49 @@ def test_a_patch_strained_alike_balances_and_its_tangent_is_a_slope(name: str, p
     change = tangent @ way
     assert (above.forces - below.forces) / 2e-6 == pytest.approx(change, abs=1e-6 * np.abs(change).max())
     assert (above.energy - below.energy) / 2e-6 == pytest.approx(float(loaded.forces @ way), abs=1e-7 * scale)
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_blocks_are_summed_where_they_stand_and_a_definite_matrix_has_their_places(seed: int) -> None:
+    """Against the dense sum, held degrees of freedom left out; rows of many entries stay definite."""
+    random = np.random.default_rng(seed)
+    size = int(random.integers(4, 30))
+    free = np.sort(random.permutation(size)[: int(random.integers(1, size + 1))])
+    places = [random.integers(0, size, (int(random.integers(1, 12)), width)) for width in (2, 4)]
+    blocks = [random.normal(size=(*dofs.shape, dofs.shape[1])) for dofs in places]
+    dense, met = np.zeros((size, size)), np.zeros((size, size), dtype=bool)
+    for dofs, block in zip(places, blocks, strict=True):
+        for rows, values in zip(dofs, block, strict=True):
+            np.add.at(dense, np.ix_(rows, rows), values)
+            met[np.ix_(rows, rows)] = True
+    pattern = Pattern.of(places, free, size)
+    assert pattern.matrix(blocks).toarray() == pytest.approx(dense[np.ix_(free, free)], abs=1e-12)
+    definite = pattern.definite.toarray()
+    np.testing.assert_array_equal(definite != 0.0, met[np.ix_(free, free)] | np.eye(free.size, dtype=bool))
+    assert np.linalg.eigvalsh(definite).min() > 0.0
+
+
+@pytest.mark.parametrize("reached", [1.0, 0.7, 0.3, 1.0 / 16.0, 0.03])
+def test_a_body_is_begun_by_the_most_of_a_depth_halved_again_that_is_reached_at_once(
+    reached: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Down to a sixteenth: where that is out of reach it is lost by name."""
+    depth, lost = 2e-3, EquilibriumLost("it folds")
+
+    def first(_: object, tried: float, *rest: object) -> float:
+        if tried > reached * depth:
+            raise lost
+        return tried / depth
+
+    monkeypatch.setattr(pressing, "pressed_first", first)
+    encounter: Any = SimpleNamespace(skin=SimpleNamespace(size=2))
+    if reached < 1.0 / 16.0:
+        with pytest.raises(EquilibriumLost, match="folds"):
+            pressing._begun(encounter, depth, 500.0, ())
+    else:
+        begun: Any = pressing._begun(encounter, depth, 500.0, ())
+        assert 0.5 * reached < begun <= reached
+        assert math.log2(begun).is_integer()
 
 
 def test_overlap_with_a_circle_has_the_slopes_that_differences_tell() -> None:

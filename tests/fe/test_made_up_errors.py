@@ -237,9 +237,12 @@ def test_ends_that_are_read_badly_are_known_no_better(order: int) -> None:
     assert used > 0.95, "nor any worse"
 
 
-def test_runs_that_end_at_quite_different_times_tell_nothing(settings: Numerics) -> None:
-    """Of sixteen, thirty-two and sixty-four steps, the last two a contact of 6 and of 3.5 s."""
-    found = judged(settings.varied(steps=16), {2: 1e-3}, 0.0, {1: 1.0})
+@pytest.mark.parametrize("steps", [STEPS, 16])
+def test_runs_that_end_at_quite_different_times_tell_nothing(steps: int, settings: Numerics) -> None:
+    """Contacts of 2, 3 and 5 s by ever fewer steps; of sixteen, thirty-two and sixty-four steps, the last two of 6 and
+    of 3.5 s.
+    """
+    found = judged(settings.varied(steps=steps), {2: 1e-3}, 0.0, {1: 1.0})
     assert all(found.total(name) == np.inf for name in (*RULED, "duration"))
 
 
@@ -298,17 +301,24 @@ def test_a_skewed_peak_that_a_quartic_fits_badly_lies_within_what_half_of_it_tel
 
 @pytest.mark.parametrize("over_step", [1.0 / 0.3, 1e-3])
 @pytest.mark.parametrize("share", [0.0, 0.1, 0.5, 0.9])
-def test_what_branches_faster_than_a_step_carry_is_taken_from_the_trusted_order(over_step: float, share: float) -> None:
-    """Down to the scheme's own, where they carry all: then they are dashpots, known to one order less."""
-    tau = over_step / STEPS
-    fast = Relaxation(1.0, (share / (1.0 - share) / tau,), (tau,))
-    strike = replace(STRIKE, relaxation=fast)
+@pytest.mark.parametrize(("slow", "dashpot"), [(0.0, 0.0), (0.4, 0.0), (0.0, 0.5), (1.0, 1.0)])
+def test_what_branches_faster_than_a_step_carry_is_taken_from_the_trusted_order(
+    over_step: float, share: float, slow: float, dashpot: float
+) -> None:
+    """Down to the scheme's own, where they carry all: then they are dashpots, known to one order less.
+
+    So where part of them is a ``dashpot``, and part of the springs is a ``slow`` branch.
+    """
+    unit, stiff = 1e-3, 3.0  # s that the contact lasts; the unit of all moduli
+    tau, viscous = unit * over_step / STEPS, unit * share / (1.0 - share)
+    relaxation = Relaxation(1.0 - slow, ((1.0 - dashpot) * viscous / tau, slow), (tau, 1e6), dashpot * viscous)
+    told = {"strike": replace(STRIKE, relaxation=relaxation.scaled(stiff)), "duration": unit}
     off = (1e-3, 4e-3, 16e-3)
     fine, half, quarter = (
-        replace(made_up(STEPS // 2**number, lambda s, e=error: e * s * (1.5 + np.cos(2.0 * s))), strike=strike)
+        replace(made_up(STEPS // 2**number, lambda s, e=error: e * s * (1.5 + np.cos(2.0 * s))), **told)
         for number, error in enumerate(off)
     )
-    found = trust((fine, half, quarter), 2, (1.0 / STEPS, 1.0 / STEPS), flat=False)
+    found = trust((fine, half, quarter), 2, (unit / STEPS, unit / STEPS), flat=False)
     assert found.orders["force"] == pytest.approx(3.0 - share)
     assert found.orders["impulse"] == pytest.approx(2.0 - share)
 
@@ -836,6 +846,13 @@ def test_where_finer_steps_fail_other_settings_are_told_by_no_fewer_than_were_as
     found = _time_steps(lambda one: TRUTH if one.steps <= finest else None, few, False)
     assert (None in found.changes) == (failing < 4), "then nothing is known of the steps"
     assert found.cheap >= few.steps
+
+
+@pytest.mark.parametrize("failing", [2, 4])
+def test_where_fewer_steps_fail_nothing_is_known_of_them(settings: Numerics, failing: int) -> None:
+    found = _time_steps(lambda one: TRUTH if one.steps != STEPS // failing else None, settings, False)
+    assert found.changes == (None,)
+    assert found.value is TRUTH
 
 
 def test_a_path_that_errs_where_it_ends_moves_the_end_by_the_time_in_which_it_is_covered() -> None:

@@ -11,7 +11,7 @@ import pytest
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.variation import SAFETY
 from fe_contact.waves.line import AWAY, UNSHOWN, Line, Run, _ended_later
-from fe_contact.waves.line_reading import FORCE, TIME, RodReading
+from fe_contact.waves.line_reading import CLEAR, DEPTH, FORCE, RINGING, TIME, RodReading, _bar_ended, _cleaned
 from fe_contact.waves.targets._block import plan
 from lumped import Scene
 
@@ -173,3 +173,56 @@ def test_gravity_changes_the_speed_for_as_long_as_a_first_contact_may_end_later(
     later = 0.5 - np.sqrt(0.25 - 0.02)  # the gap is still as small
     assert faintly["duration"] == pytest.approx(later * END, rel=0.06)
     assert faintly["restitution"] == pytest.approx(2.0 * faintly["duration"] / END)
+
+
+@pytest.mark.parametrize("falls", [True, False])
+@pytest.mark.parametrize("steps", [1, RINGING, 2 * (RINGING + CLEAR) - 1, 2 * (RINGING + CLEAR)])
+def test_what_rings_at_both_ends_of_a_contact_is_the_line_beside_it_that_jumps_from_nothing(
+    steps: int, falls: bool
+) -> None:
+    """Two contacts, in units of a step, of a force that falls to nothing amid the last ringing or rises amid the first.
+
+    One too short to have anything beside its ends stays as it is.
+    """
+    spans, time = [(9.5, 9.5 + steps), (69.5, 69.5 + steps)], np.arange(80.0 + steps)
+
+    def line(time: Array) -> Array:
+        return np.asarray(0.05 * PUSH * np.maximum(65.5 + steps - time if falls else time - 13.5, 0.0))
+
+    inside = [(time > start) & (time < end) for start, end in spans]
+    near = [np.minimum(np.abs(time - start), np.abs(time - end)) < RINGING for start, end in spans]
+    pressed, rings = np.any(inside, axis=0), np.any(np.logical_and(inside, near), axis=0)
+    force = np.where(pressed, line(time), 0.0)
+    rows = np.array([time, 3.0 * time, np.ones_like(time), force + 0.3 * PUSH * rings * (time % 2.0), -time])
+    found = _cleaned(rows, spans)
+    if steps < 2 * (RINGING + CLEAR):
+        np.testing.assert_array_equal(found, rows)
+        return
+    np.testing.assert_allclose(found[DEPTH], 3.0 * found[TIME], rtol=1e-12)
+    jumps = np.array([spans[0][0], spans[0][1], spans[1][0]])  # where the last contact ends is told elsewhere
+    np.testing.assert_array_equal(found[TIME], np.sort(np.concatenate([time, jumps, jumps])))
+    first = np.searchsorted(found[TIME], jumps)
+    rises = np.array([True, False, True])
+    np.testing.assert_allclose(found[FORCE, first], np.where(rises, 0.0, line(jumps)), atol=1e-9)
+    np.testing.assert_allclose(found[FORCE, first + 1], np.where(rises, line(jumps), 0.0), atol=1e-9)
+    np.testing.assert_allclose(found[FORCE, np.isin(found[TIME], time)], force, atol=1e-9)
+
+
+@pytest.mark.parametrize(("forces", "end", "drop"), [
+    ([4.0, 4.0, 4.0, 4.0, 2.0, 0.0], 4.0, 4.0),  # the mean of before and behind: a front came with that row
+    ([4.5, 4.0, 3.5, 3.0, 1.25, 0.0], 4.0, 2.5),  # the same of one that falls
+    ([4.0, 4.0, 4.0, 4.0, 4.0, 0.0], 4.7, 4.0),  # a front came between two rows
+    ([5.0, 4.0, 3.0, 2.0, 1.0, 0.0], 4.9, None),  # comes to nothing by itself
+])  # fmt: skip
+def test_a_contact_ends_with_the_front_that_takes_its_force(
+    forces: list[float], end: float, drop: float | None
+) -> None:
+    """Two rows of that time where it drops, from where it was going; in units of a step, one before it has left."""
+    time = np.arange(6.0)
+    rows, found = _bar_ended(np.array([time, 2.0 * time, -time, np.array(forces), 3.0 * time]), 4.7 if drop else end)
+    assert found == end
+    np.testing.assert_allclose(rows[DEPTH], 2.0 * rows[TIME], rtol=1e-12)
+    kept = int(np.ceil(end))
+    ends = [end] if drop is None else [end, end]
+    np.testing.assert_allclose(rows[TIME], [*time[:kept], *ends], rtol=1e-12)
+    np.testing.assert_allclose(rows[FORCE], [*forces[:kept], *([] if drop is None else [drop]), 0.0], atol=1e-12)

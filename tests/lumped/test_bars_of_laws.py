@@ -18,7 +18,7 @@ from scipy.special import beta
 from lumped import Model, Motion, Quantity, Scene, laws, simulate
 from lumped.indentation import FiniteSize, power_law
 from lumped.laws import _force_law, _hereditary
-from lumped.laws._assembly import Answer, bars
+from lumped.laws._assembly import AROUND, BENDS, Answer, bars
 from lumped.numbers import Array
 from lumped.result.history import End
 from lumped.result.result import UNITS, meets
@@ -169,6 +169,15 @@ def test_what_a_coarse_march_lacks_is_known_to_first_order() -> None:
     assert len(known) == 4
     for name, ratios in known.items():
         assert ratios == pytest.approx([half_widths.SAFETY] * len(ratios), rel=0.1), name
+
+
+def test_the_bar_of_a_force_is_that_of_its_largest_error() -> None:
+    """Which may lie a little beside all places that are looked at."""
+    scene, _ = spring(np.random.default_rng(25))
+    coarse, fine = (_force_law._estimated(laws.hertz.of(scene), scene, steps) for steps in (1e-3, 1e-8))
+    times = np.linspace(0.0, min(one.answer.times[-1] for one in (coarse, fine)), 1001)
+    apart = np.abs(coarse.answer.columns.force(times) - fine.answer.columns.force(times)).max()
+    assert 0.7 < coarse.force_error / (half_widths.SAFETY * apart) < 1.1
 
 
 def test_a_force_that_ends_upright_is_known_to_its_end() -> None:
@@ -397,3 +406,10 @@ def test_a_peak_is_sought_no_closer_than_two_integrations_place_it() -> None:
         bar = bars(fine, coarse, 1.0)[0]["peak_time"].error
         assert 0.999 < bar / (apart or 2.0 * slope) < 1.2
         assert len(counts) <= 5
+
+
+@pytest.mark.parametrize("rate", [-3.0, 0.0, 0.4])
+def test_how_a_force_bends_is_told_whatever_its_slope_there(rate: float) -> None:
+    """Of a parabola exactly: of that through 1 + rate t - 2 t^2 over the width that is looked at."""
+    assert BENDS @ (1.0 + rate * AROUND - 2.0 * AROUND**2) == pytest.approx(-2.0, rel=1e-12)
+    assert AROUND[[0, -1]].tolist() == [0.0, 1.0], "all of it"

@@ -147,6 +147,14 @@ def test_two_integrators_agree(
         assert first[name] == pytest.approx(single[name], rel=1e-6)
 
 
+def test_a_dashpot_that_lets_go_at_depth_zero_alone_is_followed_until_the_scene_ends(impact: Build) -> None:
+    """By default so many contact times of its spring alone; creeping back would take far longer."""
+    scene = impact(viscosity=1e3, profile="parabola")
+    result = simulate(Correspondence(exit="depth"), scene, 1e-4)
+    assert result.message == End.TIME.value
+    assert result.history.time[-1] == pytest.approx(scene.end_time, rel=1e-12)
+
+
 def test_flights_are_shorter_than_from_a_flat_surface(impact: Build) -> None:
     scene = bouncing(impact, 4)
     result = simulate(Correspondence(), scene, 1e-7)
