@@ -144,6 +144,7 @@ def nearest(name: str, accepted: Sequence[str] | Mapping[str, str]) -> str:
 
     What a mapping's names are shown as are its values.
     """
-    close = get_close_matches(name[:SHOWN_CHARACTERS], list(accepted), n=1, cutoff=0.5)
-    shown_as = accepted if isinstance(accepted, Mapping) else dict(zip(close, close, strict=True))
+    tried = dict.fromkeys((name[:SHOWN_CHARACTERS], name[:SHOWN_CHARACTERS].lower()))
+    close = [found for one in tried for found in get_close_matches(one, list(accepted), n=1, cutoff=0.5)]
+    shown_as = accepted if isinstance(accepted, Mapping) else {found: found for found in close}
     return f"; did you mean {shown_as[close[0]]}?" if close else ""

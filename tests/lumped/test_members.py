@@ -123,9 +123,10 @@ def test_law_simulates_what_it_claims(name: str, impact: Callable[..., Scene]) -
     assert result.work
 
 
-def test_unknown_law_names_the_nearest() -> None:
-    with pytest.raises(BadInput, match="did you mean correspondence"):
-        laws.get("corespondence")
+@pytest.mark.parametrize(("name", "meant"), [("corespondence", "correspondence"), ("TING", "ting")])
+def test_unknown_law_names_the_nearest(name: str, meant: str) -> None:
+    with pytest.raises(BadInput, match=f"did you mean {meant}"):
+        laws.get(name)
 
 
 def run(code: str) -> str:
