@@ -152,8 +152,7 @@ class Statics:
     def certified(self, numerics: Numerics) -> Certified:
         """A contact, or several, and the bars. Raises BadInput for one deeper than its bodies."""
         scene = self.scene
-        flat = scene.geometry.target.fixed_radius(scene.geometry.shape) is not None  # may peak early and again later
-        fixed = flat or "steps" in self.chosen.pinned
+        fixed = "steps" in self.chosen.pinned
         found = certify(Strike.of(scene), scene.geometry, numerics, scene.motion.impacts, self.progress, fixed)
         for curve in (budget.curve for budget in found.row):
             scene.check_sunk(curve.quantities["peak_depth"] or 0.0, float(np.sqrt(curve.radius_squared.max())))

@@ -108,7 +108,9 @@ class Runs(AnyRuns[Numerics]):
                 break
             share = share_of_peak(found.quantities["peak_time"] or 0.0, found.duration)
             settings = settings.varied(contact_time=found.duration, peak_share=share)
-        more = 1.0 if fixed else crowded(settings.peak_share) / crowded(expected)
+        if fixed or isinstance(self.surface(settings), FlatEnd):  # under which a force may peak early and again later
+            return settings
+        more = crowded(settings.peak_share) / crowded(expected)
         return settings.varied(steps=min(4 * math.ceil(more * settings.steps / 4), RANGES["steps"][1]))
 
     def follow(self, settings: Numerics) -> Followed:
