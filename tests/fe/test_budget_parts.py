@@ -380,7 +380,7 @@ def test_the_deepest_and_the_widest_that_a_contact_became_are_what_may_be_too_mu
     monkeypatch.setattr(reference, "Strike", SimpleNamespace(of=lambda scene: None))
     sunk = list[tuple[float, float]]()
     made_up: Any = SimpleNamespace(
-        check_sunk=lambda *of: sunk.append(of), geometry=None, motion=SimpleNamespace(impacts=3)
+        check_sunk=lambda *of: sunk.append(of), geometry=None, motion=SimpleNamespace(impacts=3), pinned=()
     )
     reference.Statics(made_up, made_up, made_up).certified(numerics)
     assert sunk == [(1.0, 3.0), (2.0, 4.0), (0.0, 5.0)]
