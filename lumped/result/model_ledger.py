@@ -21,6 +21,7 @@ from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
 from lumped.shapes._block import Block
 from lumped.shapes.base import Shape
+from lumped.targets.half_space import HalfSpace
 from lumped.targets.rod import Rod
 
 GRAVITY = 9.81  # physics: m/s2
@@ -321,7 +322,7 @@ def _no_bulk(scene: Scene) -> str:
         return f"no waves {state}"
     if not target.has_length or (isinstance(shape, Block) and shape.uniform):
         return ""
-    if target.name == "half_space":
+    if isinstance(target, HalfSpace):
         return f"no impact of a {shape.name} on a {target.name} {state}"
     return f"one impact is followed {state}" if scene.motion.impacts > 1 else ""
 
