@@ -132,6 +132,8 @@ def as_number(value: object) -> object:
 def shown(value: object) -> str:
     """A value as the user wrote it, about, and not at length."""
     own = as_number(value)
+    if isinstance(own, dict):
+        return shortened(f"{{ {', '.join(f'{key} = {shown(one)}' for key, one in own.items())} }}")
     try:
         written_so = str(own) if isinstance(own, date | time) else repr(own)
         return shortened(written_so.lower() if isinstance(own, bool) else written_so)

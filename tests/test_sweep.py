@@ -97,7 +97,7 @@ correlation = [["striker.mass", "striker.mass", 2.0]]
         "zipped": "one length",
         "draws.seed": "missing",
         "draws.count": "from 1",
-        "draws.target.material.nu": "normal = [mean, deviation]",
+        "draws.target.material.nu": "{ gaussian = [0.3, 0.1] }; accepted: { uniform = ",
         "draws.correlation": "between -1 and 1",
     }.items():
         assert [line for line in said if f"faulty.toml: {key}: " in line and cure in line], (key, said)
