@@ -16,6 +16,8 @@ from fe_contact.budget.runs import PILOT_STEPS, PLACED, Runs
 from fe_contact.march.impact import share_of_rest, step_length
 from fe_contact.steppers.steps import Strike
 from lumped import Result, Scene, laws, simulate
+from lumped.errors import NotReached
+from lumped.laws import mdr
 
 SCENES = ("polymer-sphere", "polymer-layer", "rod-in-ring", "polymer-cone")
 CASES, SEED = 48, 20261123
@@ -122,3 +124,19 @@ def test_twice_the_steps_halve_every_step_past_the_expected_end(late: float) -> 
 @pytest.mark.parametrize("left", [0.3, 0.1, 0.03])
 def test_twice_the_steps_halve_every_step_towards_separation(left: float) -> None:
     assert share_of_rest(left, 400) == pytest.approx(2.0 * share_of_rest(left, 800), rel=0.05)
+
+
+def test_where_no_spring_leaves_another_law_tells_what_to_expect(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As may be under a ball that its weight lets go only after a thousand times that its force took to rise."""
+
+    def lost(*_: object) -> None:
+        raise NotReached("the springs at the edge did not leave")
+
+    scene = Scene.load("polymer-sphere")
+    expected = scales(scene, planning.plan(scene, {}).numerics)
+    monkeypatch.setattr(mdr, "estimate", lost)
+    found = scales(scene, planning.plan(scene, {}).numerics)
+    for name in ("contact_radius", "peak_force", "peak_time", "duration"):
+        assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=0.03), (
+            name
+        )  # 32 springs place a peak so

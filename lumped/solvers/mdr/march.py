@@ -306,7 +306,7 @@ def _found(shrinking: Shrinking, guess: float) -> tuple[Attempt, End]:
         if further - h <= CLOSE * h:
             return tried, End.SEPARATED
         low, left, h = h, tried.pull, min(WIDER * h, further)
-    raise NotReached(f"the springs at the edge did not leave after {shrinking.now.time:.6g} s")
+    raise NotReached(f"the springs at the edge did not leave after {shrinking.now.time:.6g} s; cure: another --method")
 
 
 def _zero(
