@@ -137,6 +137,5 @@ def test_where_no_spring_leaves_another_law_tells_what_to_expect(monkeypatch: py
     monkeypatch.setattr(mdr, "estimate", lost)
     found = scales(scene, planning.plan(scene, {}).numerics)
     for name in ("contact_radius", "peak_force", "peak_time", "duration"):
-        assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=0.03), (
-            name
-        )  # 32 springs place a peak so
+        by_springs = getattr(expected, name)  # 32 of them, which place a peak between two steps
+        assert getattr(found, name) == pytest.approx(by_springs, rel=0.03), name
