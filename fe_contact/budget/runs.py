@@ -108,7 +108,8 @@ class Runs(AnyRuns[Numerics]):
                 break
             share = share_of_peak(found.quantities["peak_time"] or 0.0, found.duration)
             settings = settings.varied(contact_time=found.duration, peak_share=share)
-        if fixed or isinstance(self.surface(settings), FlatEnd):  # under which a force may peak early and again later
+        flat = any(isinstance(one, FlatEnd) for one in self._surfaces)  # a force may peak early and again later there
+        if fixed or flat:
             return settings
         more = crowded(settings.peak_share) / crowded(expected)
         return settings.varied(steps=min(4 * math.ceil(more * settings.steps / 4), RANGES["steps"][1]))
