@@ -76,8 +76,8 @@ TING_STUDY, TING_BOUND = 1_000, 25.0  # a tenth of 10,000 and of its 250 imports
 # Whole sweeps in two processes by the clock: base scene, method, cases measured, imports allowed for so many.
 SWEEPS = [
     ("polymer-sphere", "fe", 300, 45.0),
-    ("polymer-layer", "fe", 40, 18.0),
-    ("polymer-sphere", "correspondence", 2000, 6.0),
+    ("polymer-layer", "fe", 200, 90.0),
+    ("polymer-sphere", "correspondence", 20_000, 60.0),
 ]
 # Groups of which the README shows one row.
 MANY = {"indent": " (the dearest row)", "law": " (the dearest law)"}
