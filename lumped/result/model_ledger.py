@@ -15,7 +15,7 @@ from lumped.materials.energies.base import DEFAULT, energy_of
 from lumped.materials.radiation import Pulse
 from lumped.result.history import History
 from lumped.result.result import LedgerEntry, Quantity, percent
-from lumped.scene.geometry import Geometry, changing_faults, finite_faults, plasticity_faults
+from lumped.scene.geometry import Geometry, changing_faults, finite_faults, plasticity_faults, whole_mass_faults
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
@@ -136,7 +136,8 @@ def inertia(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
     mass, geometry = scene.reduced_mass, scene.geometry
     pulse = Pulse(peak.force, peak.duration, mass, 0.5 * mass * scene.velocity**2, peak.contact_radius)
     estimate, note = scene.target.inertia_left_out(geometry.shape, geometry.material, pulse)
-    refused = [str(fault) for fault in changing_faults("", geometry)]
+    faults = changing_faults("", geometry) + whole_mass_faults("", geometry, scene.mass, scene.target_mass)
+    refused = [str(fault) for fault in faults]
     if scene.motion.impacts > 1 and scene.target.rings_on(geometry.shape):
         refused.append("what rings on between contacts is followed in one impact")
     built = scene.target.waves_under(geometry.shape) and not (model.finite or model.plasticity or refused)

@@ -126,14 +126,20 @@ def check_striker_material(source: str, target: Target, shape: Shape, striker: M
 
 def flying_faults(source: str, geometry: Geometry, mass: float, target_mass: float | None) -> list[Fault]:
     """What is wrong with the masses, kg, of bodies with inertia that fly whole: their densities say the same."""
-    shape, target = geometry.shape, geometry.target
+    target = geometry.target
     faults = target.inertia_faults(source, geometry.striking)
     if geometry.striking is not None and target.deformable and geometry.striking.density is None:
         reason = "missing; model.inertia = true needs it, in kg/m3"
         faults.append(Fault(source, "striker.material.density", reason))
+    return faults + whole_mass_faults(source, geometry, mass, target_mass)
+
+
+def whole_mass_faults(source: str, geometry: Geometry, mass: float, target_mass: float | None) -> list[Fault]:
+    """Masses, kg, of whole bodies that are not those of their densities."""
+    faults = list[Fault]()
     for part, body, material, given in (
-        ("striker", shape, geometry.striking, mass),
-        ("target", target, geometry.material, target_mass),
+        ("striker", geometry.shape, geometry.striking, mass),
+        ("target", geometry.target, geometry.material, target_mass),
     ):
         whole = body.whole_mass(material.density) if material is not None and material.density is not None else None
         if whole is not None and (given is None or abs(given - whole) > SPARE_MASS * whole):

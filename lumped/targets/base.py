@@ -130,7 +130,7 @@ class Target(Record, ABC):
         """
         share = radiated_share(material, pulse, shape.total if shape.plane else None)
         if share is not None:
-            return LOST_FORCE * share, f"radiates {share:.2g} of the kinetic energy"
+            return min(LOST_FORCE * share, 1.0), f"radiates {min(share, 1.0):.2g} of the kinetic energy"
         return None, NEEDS_DENSITY if material.density is None else NO_SPEED
 
     def ends(self, shape: Shape, nu: float, contact_radius: float) -> FreeEnd | None:
