@@ -134,6 +134,8 @@ def shown(value: object) -> str:
     own = as_number(value)
     if isinstance(own, dict):
         return shortened(f"{{ {', '.join(f'{key} = {shown(one)}' for key, one in own.items())} }}")
+    if isinstance(own, list) and any(isinstance(one, dict) for one in own):
+        return shortened(f"[{', '.join(map(shown, own))}]")
     try:
         written_so = str(own) if isinstance(own, date | time) else repr(own)
         return shortened(written_so.lower() if isinstance(own, bool) else written_so)

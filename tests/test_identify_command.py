@@ -139,6 +139,20 @@ def test_bad_options_write_nothing(
     assert message in fault
 
 
+@pytest.mark.parametrize("own", ["foo=1", "striker.foo=1"])
+def test_a_key_of_one_curve_that_is_none_is_named(
+    own: str, curves: tuple[Path, Path], refused: Callable[..., list[str]]
+) -> None:
+    (fault,) = refused("identify", f"{curves[0]}:{own}", "--scene", "polymer-sphere", "--free", FREE)
+    assert f"{own.partition('=')[0]}: unknown key" in fault
+
+
+def test_a_curve_s_path_may_look_like_keys_of_its_own(curves: tuple[Path, Path], empty: Path) -> None:
+    named = empty / "drop:mass=0.05.csv"
+    named.write_bytes(curves[0].read_bytes())
+    assert main(["identify", named.name, "--scene", "polymer-sphere", "--free", FREE]) == 0
+
+
 @cache
 def reference(name: str) -> History:
     """The impact of a packaged scene by finite elements."""

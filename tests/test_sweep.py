@@ -104,6 +104,12 @@ correlation = [["striker.mass", "striker.mass", 2.0]]
     assert [path.name for path in empty.iterdir()] == ["faulty.toml"]
 
 
+def test_tables_where_one_belongs_are_shown_as_written(empty: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (empty / "rows.toml").write_text('scene = "polymer-sphere"\n[[axes]]\nkey = "striker.mass"\n')
+    assert main(["sweep", "rows.toml"]) == 2
+    assert "axes: [{ key = 'striker.mass' }] is not accepted; accepted: a table" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("changed", "said"),
     [

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from lumped.scene.scene import Scene
 
 # CURVE.csv:striker.velocity=0.3,striker.mass=0.1; a path may hold colons of its own
-OWN = re.compile(r"(?P<path>.*?):(?P<own>[A-Za-z_]\w*\.[^:=]+=.*)")
+OWN = re.compile(r"(?P<path>.*?):(?P<own>[A-Za-z_][^:=]*=.*)")
 WRITE, CORNER, LOW_PASS = "--write", "--corner", "--low-pass"
 METHODS = ("ting", FE)
 LEAST_DRAWS, MOST_DRAWS = 100, 1_000_000  # the ends of a band need some; work
@@ -86,7 +86,7 @@ def _curves(texts: list[str]) -> dict[str, dict[str, object]]:
 def _curve_of(text: str) -> tuple[str, dict[str, object]]:
     """A curve's path, and the keys that its impact has of its own. Raises BadInput."""
     split = OWN.fullmatch(text)
-    if split is None:
+    if split is None or Path(text).is_file():
         return text, {}
     return split["path"], dict(parse_assignment(part) for part in split["own"].split(",") if part.strip())
 
