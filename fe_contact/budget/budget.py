@@ -200,14 +200,15 @@ class Budget:
     def force_error(self, time: Array) -> Array:
         """Half-width of the force's error band, N; the whole of the largest force where a variation failed.
 
-        After the last step the force falls to nothing in any way.
+        Before the first step's end it may rise, and after the last step falls to nothing in any way.
         """
-        last = self.curve.last_step if self.curve.separated else np.inf
+        first, last = self.curve.first_step, self.curve.last_step if self.curve.separated else np.inf
+        rising = np.where(time < first, self.curve.force(np.array([first])), 0.0)
         fading = np.where(time > last, self.curve.force(np.array([last])), 0.0)
         changes = [change for causes in self.changes.values() for change in causes]
         unknown = np.full_like(time, self.curve.dense_force.max())
         known = [unknown if change is None else change.force(time) for change in changes]
-        return np.asarray(np.sum([fading, *known], axis=0))
+        return np.asarray(np.sum([rising, fading, *known], axis=0))
 
 
 def _error(change: Variation | Softening | None, name: str) -> float:

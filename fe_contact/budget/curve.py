@@ -43,6 +43,9 @@ EARLIEST = 4  # rows after touch that tell whether steps or shares are more crow
 DENSE = SHARES**2 * (3 - 2 * SHARES)  # shares of the contact, crowded at its ends, for peaks and norms
 FIRST = 3  # steps: what relaxes later, polynomials tell
 BEGUN = 1e-12  # rounding: of x, below which a contact has only begun
+RISING = (
+    0.05  # of the first step, over x, in which what presses almost at once rises by 63 %: all of it within the step
+)
 INSIDE = np.arange(1, 8)[:, None] / 8  # places put into every interval
 
 
@@ -198,9 +201,8 @@ class Curve:
 
     @cached_property
     def polynomials(self) -> LocalPolynomials:
-        """Mean force but for how it began, and depth, between the steps, over x; at touch it has only begun."""
+        """Mean force but for how it began, and depth, between the steps, over x."""
         rest = self.mean_force - self._begun(self.x)[0]
-        rest[0] = self.mean_force[0]
         return LocalPolynomials.through(self.x, np.stack([rest, self.depth]))
 
     def resolved(self, x: Array) -> tuple[Array, Array, Array]:
@@ -212,16 +214,21 @@ class Curve:
     def _begun(self, x: Array) -> tuple[Array, Array]:
         """Mean force and force at x, N, of a load that grows on as it began, as large as the mean over the first step.
 
-        None under a flat end, whose area presses at once, and where no branch relaxes within the first steps.
+        None under a flat end, whose area presses at once, and where neither a dashpot, on which a line presses almost
+        at once, nor a branch relaxes within the first steps.
         """
         relaxation, power = self.strike.relaxation, self.strike.power
-        shortest = min(relaxation.times, default=np.inf)
+        shortest = 0.0 if relaxation.viscosity > 0.0 else min(relaxation.times, default=np.inf)
         if self.flat or shortest > self.duration * self.x[: FIRST + 1][-1] ** 2:
             return np.zeros_like(x), np.zeros_like(x)
         time, first = self.duration * np.maximum(x, BEGUN) ** 2, self.duration * float(self.x[1]) ** 2
         load = self.mean_force[1] * (time / first) ** power / relaxation.felt(first, power)[1]
         now, mean = relaxation.felt(time, power)
-        return load * mean, load * (power + 1.0) * now
+        if relaxation.viscosity == 0.0:
+            return load * mean, load * (power + 1.0) * now
+        since = x / (RISING * float(self.x[1]))
+        left = np.exp(-since)
+        return load * mean * (1.0 - left), load * ((power + 1.0) * now * (1.0 - left) + 0.5 * mean * left * since)
 
     def read(self, time: Array) -> Reading:
         """Force, zero outside the contact, impulse and depth up to its end.
@@ -284,6 +291,12 @@ class Curve:
     def dense_velocity(self) -> Array:
         """Velocity at :attr:`dense_time`, m/s."""
         return self.velocity(self.dense_time, self.dense.impulse)
+
+    @property
+    def first_step(self) -> float:
+        """Up to when a force that rises almost at once may rise in any way, s: the first step on a dashpot, else 0."""
+        rises = self.strike.relaxation.viscosity > 0.0 and not self.flat
+        return self.duration * float(self.x[1]) ** 2 if rises else 0.0
 
     @property
     def last_step(self) -> float:

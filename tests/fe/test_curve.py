@@ -57,6 +57,24 @@ def test_a_branch_that_relaxes_within_the_first_step_is_read_as_its_law_says(pow
     np.testing.assert_allclose(curve.force(time), true, rtol=1e-6, atol=1e-12 * true[-1])
 
 
+@pytest.mark.parametrize("power", [1.0, 1.25, 1.5])
+def test_what_a_dashpot_pushes_back_at_touch_is_not_smoothed_over_the_first_steps(power: float) -> None:
+    """A line that comes in steadily presses on it at once: force c (1 + t/tau). Through every other step too."""
+    x = np.linspace(0.0, 1.0, 41)
+    relaxation = Relaxation(1.0, viscosity=0.3)
+    strike = Strike(lambda r: r**2, 1.0, 1.0, 0.0, relaxation, 10.0, power=power)
+    mean = np.concatenate([[0.0], x[1:] ** (2 * power) * relaxation.felt(x[1:] ** 2, power)[1] / (power + 1.0)])
+    curve = Curve(strike, 1.0, False, x, mean, x**2, np.array([0.0, 1.0]), np.array([0.0, 1.0]), 0.0, {})
+    time = np.geomspace(x[1] ** 2, 1.0, 200)
+    true = time**power * relaxation.felt(time, power)[0]
+    np.testing.assert_allclose(curve.force(time), true, rtol=1e-6)
+    assert Variation(curve, curve.thinned(), 1.0).history < 2e-3
+    begun = curve.force(curve.first_step * np.linspace(0.0, 1.0, 200))
+    assert begun[0] == 0.0
+    assert np.all(begun <= 1.2 * true[0])
+    assert curve.first_step == pytest.approx(x[1] ** 2)
+
+
 def test_a_force_that_jitters_from_step_to_step_is_read_through_fewer() -> None:
     """Every other step leaves out what is off by turns: the force is right again, to what rows so far apart tell."""
     calm, true = calmest(bump(256, 1e-6)), bump(256, 0.0)
