@@ -251,8 +251,7 @@ class Flights:
                 if taken >= self._patience and level < highest:
                     level, taken = level + 1, 0
             elif level:
-                level, taken = level - 1, 0
-                highest = level
+                highest = level = level - 1
             else:
                 return self._touched(moment)
         return None

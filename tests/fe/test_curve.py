@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from scipy.integrate import cumulative_simpson
 
 from fe_contact.budget.curve import PEAK_SHARE, PLACES, Curve, LocalPolynomials, fitted_peak, peak, seen_from_both_sides
 from fe_contact.budget.variation import LATE, Variation, _at_corners, _crossings, calmest, calmest_at_corners
@@ -41,6 +42,10 @@ def bump(steps: int, jitter: float) -> Curve:
     mean = np.concatenate([[0.0], impulse[1:] / time[1:]])
     strike = Strike.of(Scene.load("polymer-layer"))
     return Curve(strike, 1.0, True, x, mean, time, np.array([0.0, 1.0]), np.ones(2), 0.0, {})
+
+
+def force_of(time: np.ndarray, power: float) -> np.ndarray:
+    return np.asarray((4.0 * time * (1.0 - time**2)) ** power)
 
 
 @pytest.mark.parametrize("within", [1e-4, 1e-2, 0.3])
@@ -193,6 +198,28 @@ def test_the_peak_of_a_quartic_is_found_by_interpolation_and_by_fit(place: float
     times = np.linspace(0.0, 1.0, 21)
     for found in (peak(times, quartic(times)), fitted_peak(0.0, 1.0, quartic(np.linspace(0.0, 1.0, PLACES)))):
         assert found == pytest.approx((place, 2.0), abs=1e-9)
+
+
+@pytest.mark.parametrize("power", [1.1, 1.5, 3.0])
+def test_a_fit_of_a_peak_errs_by_what_a_fit_half_as_high_changes_and_a_third_more(power: float) -> None:
+    """A force [4 t (1 - t^2)]^power, no polynomial, by the best quartics through 17 of its values.
+
+    Half as high a part of a peak is 2^(1/2) times less wide: errors of the fourth order in that fall to a quarter.
+    """
+    x = np.linspace(0.0, 1.0, 321)
+    impulse = np.append(0.0, cumulative_simpson(2.0 * x * force_of(x**2, power), x=x))
+    mean = np.append(0.0, impulse[1:] / x[1:] ** 2)
+    curve = replace(bump(320, 0.0), x=x, mean_force=mean, radius_squared=np.array([1.0, 2.0]))
+    peaks = list[np.ndarray]()
+    for share in (0.98, 0.99):
+        high = curve.dense_time[curve.dense_force > share * curve.dense_force.max()]
+        times = np.linspace(high[0], high[-1], 17)
+        quartic = np.polynomial.Polynomial.fit(times, curve.force(times), 4)
+        (top,) = (root.real for root in quartic.deriv().roots() if high[0] < root.real < high[-1] and root.imag == 0.0)
+        peaks.append(np.array([top, quartic(top)]))
+    spread = np.abs(peaks[0] - peaks[1]) / (1.0 - 1.0 / 4.0)
+    told = curve.with_peak_spread().peak_spread
+    assert [told["peak_time"], told["peak_force"]] == pytest.approx(spread, rel=1e-4)
 
 
 def test_a_fitted_peak_hardly_follows_a_jitter() -> None:

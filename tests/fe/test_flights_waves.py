@@ -123,6 +123,24 @@ def test_the_ball_falls_freely_and_the_ledger_closes(cases: list[Case]) -> None:
         assert not (state.signed_pressure > 0.0).any()
 
 
+@pytest.mark.parametrize("number", range(4))
+def test_a_touch_is_where_the_surfaces_meet_and_not_where_the_step_before_it_ends(
+    cases: list[Case], number: int
+) -> None:
+    """Located within its step, and nothing presses yet. From there on it is now: nothing flies any more."""
+    touch, flights = landed(cases[number], 0.1, 8)
+    apart = touch.state.displacement.sum()
+    closing = touch.state.velocity.sum() * 0.1
+    assert closing > 0.0
+    assert abs(apart) < 2e-3 * closing
+    assert touch.state.signed_pressure.max() <= 0.0
+    flown, body, parted = flights.steps, cases[number].body, cases[number].parted
+    motion = np.array([[0.0, 0.0], [0.1, 0.3], [0.0, 0.0]])
+    meeting = Moment(state_of(body, 1.0, motion, (np.zeros((1, 2)),), touch.state.signed_pressure), parted.energies)
+    assert flights._touched(meeting) is meeting
+    assert flights.steps == flown
+
+
 def test_a_touch_after_the_end_is_none(cases: list[Case]) -> None:
     flights = Flights(Steppers(cases[0].body, Enforced(penalty, 1.0)), STEP, PATIENCE)
     assert flights.landing(cases[0].parted, 0.5 * cases[0].touch()) is None
@@ -178,6 +196,29 @@ def test_steps_of_a_flight_double_and_shrink_until_the_touch_is_within_the_short
     assert min(flights.lengths) == 1.0
 
 
+@pytest.mark.parametrize("patience", [2, 5])
+@pytest.mark.parametrize("flight", [0.5, 1.5, 9.5, 60.5, 777.5])
+def test_a_flight_takes_as_many_steps_of_each_length_as_it_waits_and_then_halves_them(
+    monkeypatch: pytest.MonkeyPatch, flight: float, patience: int
+) -> None:
+    """Doubled after so many each, until one would meet the surface; then the binary digits of what is left."""
+    monkeypatch.setattr(impact, "_entered", lambda moment, stepper, state: SimpleNamespace(state=state))
+    flights = Clocked(flight, patience)
+    still: Any = SimpleNamespace(state=SimpleNamespace(time=0.0))
+    assert flights.landing(still, math.inf) is not None
+    growing, time = list[float](), 0.0
+    while time + (length := 2.0 ** (len(growing) // patience)) < flight:
+        growing.append(length)
+        time += length
+    left, halving = flight - time, [length]
+    while length > 1.0:
+        length *= 0.5
+        halving += [length] * (1 + math.floor(left / length)) if length == 1.0 else [length] * (2 if left > length else 1)
+        left %= length
+    assert flights.lengths == growing + halving
+    assert flights.landing(still, 0.0) is None
+
+
 def bounced(mass: float, velocity: float, gravity: float, step: float) -> tuple[Motion, float]:
     """A mass that meets a spring of one, in equal steps up to the first after it has left, and when it does, s."""
     pace = math.sqrt(1.0 / mass)
@@ -226,6 +267,22 @@ def test_a_striker_that_leaves_between_two_steps_has_left_where_and_as_fast_as_i
     assert energy["in"] == pytest.approx(energy["out"])
     rest = {name: value for name, value in energy.items() if name not in ("in", "out")}
     assert np.array(list(rest.values())) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_energy_at_the_end_is_what_goes_in_less_what_is_told_and_nothing_is_radiated_that_no_wave_takes() -> None:
+    """Of 2 J: what a mass of 3 kg at 0.5 m/s has, what else moves and is strained, heat, and what steps and contact lose."""
+    here, none = np.array([-0.5]), np.zeros(1)
+    held = Energies(2.0, 0.4, 0.03, 0.2, 0.01, 0.05, 0.1, 0.002)
+    last = Sample(1.0, 0.0, 0.0, none, here, none, none, here, held, 1)
+    first = last._replace(velocity=np.array([7.0]), energies=Energies(*8 * [9.0]))
+    found = Motion((first, last), cast("Any", None), 1)
+    lost = {name: getattr(held, name) for name in ("viscous", "radiated", "contact", "numerical")}
+    out = 0.5 * 3.0 * 0.5**2
+    stored = held.rigid + held.deformable + held.strain - out
+    residual = held.work - out - stored - sum(lost.values())
+    assert impact.account(found, 3.0) == pytest.approx(
+        {"in": 2.0, "out": out, "stored": stored, "residual": residual} | lost
+    )
 
 
 @pytest.mark.parametrize("endless", [True, False])
