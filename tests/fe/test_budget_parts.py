@@ -331,6 +331,26 @@ def test_the_tolerance_that_is_met_is_said_where_it_is_known(error: float, met: 
     assert not met or f"a tolerance of {met} is met" in said
 
 
+@pytest.mark.parametrize("worst", [0, 1])
+def test_of_several_contacts_the_tolerance_is_met_that_all_of_them_meet(worst: int) -> None:
+    """Each that misses is named by its number, and no other."""
+    parts = [
+        {name: Quantity(1.0, {"duration": error}.get(name, 1e-4), "") for name in UNITS}
+        for error in (np.roll([3.9e-2, 1.1e-2], worst).tolist() + [5e-4])
+    ]
+    found: Any = SimpleNamespace(numerics=SimpleNamespace(tolerance=1e-3), parts=tuple(parts))
+    scene: Any = SimpleNamespace(motion=SimpleNamespace(impacts=3))
+    said = "; ".join(solved._missed(scene, SimpleNamespace(refused="so dear"), found))
+    assert "a tolerance of 0.04 is met" in said
+    assert "so dear" in said
+    errors = ["0.039", "0.011"]
+    for number in (1, 2):
+        assert f"contact {number}: tolerance 0.001 not reached: duration to {errors[number - 1 - worst]}" in said
+    assert "contact 3" not in said
+    found.parts = (parts[2], parts[2])
+    assert solved._missed(scene, SimpleNamespace(refused="so dear"), found) == []
+
+
 @pytest.mark.parametrize("few", [True, False])
 def test_a_mesh_is_varied_with_no_fewer_steps_where_few_would_hide_what_it_changes(
     few: bool, numerics: WaveNumerics

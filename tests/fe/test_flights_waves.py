@@ -14,7 +14,8 @@ from scipy.optimize import brentq
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.dynamics.body import BodyWithMass, Part, Pressing, state_of, undeformed
 from fe_contact.dynamics.march import Energies, Moment, Motion, Sample, Steppers, account_at_start
-from fe_contact.dynamics.stepping import Enforced
+from fe_contact.dynamics.stepping import Enforced, ImplicitStepper
+from fe_contact.errors import TooManySteps
 from fe_contact.march.impacts import Grounded
 from fe_contact.waves import impact
 from fe_contact.waves.impact import Flights, WaveBouncer
@@ -217,6 +218,46 @@ def test_a_flight_takes_as_many_steps_of_each_length_as_it_waits_and_then_halves
         left %= length
     assert flights.lengths == growing + halving
     assert flights.landing(still, 0.0) is None
+
+
+@pytest.mark.parametrize("size", [1, 4])
+def test_flights_end_with_the_work_that_one_march_may_be(monkeypatch: pytest.MonkeyPatch, size: int) -> None:
+    """Steps times unknowns: of a body four times as large a quarter of the steps."""
+    monkeypatch.setattr(impact, "MOST_WORK", 12.0)
+    steppers: Any = SimpleNamespace(body=SimpleNamespace(size=size))
+    flights, counted = Flights(steppers, 1.0, 2), list[float]()
+    flights._counted = counted.append
+    stepper: Any = object.__new__(ImplicitStepper)
+    monkeypatch.setattr(ImplicitStepper, "flown", lambda self, state: "a step later")
+    moment: Any = SimpleNamespace(state=SimpleNamespace(time=0.5))
+    for _ in range(12 // size):
+        assert flights._flown(moment, stepper) == "a step later"
+    with pytest.raises(TooManySteps):
+        flights._flown(moment, stepper)
+    assert flights.steps == 12 // size
+    assert counted == [1.0] * (12 // size)
+
+
+@pytest.mark.parametrize(
+    ("force", "velocity", "closing", "gone"),
+    [
+        (0.0, -0.3, [-0.5, 0.9], True),  # it moves back, whatever the surface does elsewhere
+        (-1e-9, -0.3, [0.9, 0.9], True),
+        (1e-9, -0.3, [-0.5, -0.9], False),  # something presses
+        (0.0, 0.3, [-0.05, -0.9], True),  # the surface moves on everywhere
+        (0.0, 0.3, [0.05, -0.9], False),  # not everywhere
+        (0.0, 0.0, [0.0, -0.9], False),
+    ],
+)
+def test_a_striker_has_left_where_nothing_presses_and_it_moves_back_or_the_surface_moves_on(
+    force: float, velocity: float, closing: list[float], gone: bool
+) -> None:
+    none, energies = np.zeros(1), Energies(*8 * [0.0])
+    rates = np.array(closing)
+    sample = Sample(1.0, force, force, none, rates, none, none, np.array([velocity, 5.0]), energies, 1)
+    assert impact.left(sample) == gone
+    assert impact.left(sample, 0.04) == gone
+    assert not impact.left(sample, 0.4)
 
 
 def bounced(mass: float, velocity: float, gravity: float, step: float) -> tuple[Motion, float]:

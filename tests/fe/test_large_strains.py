@@ -302,6 +302,14 @@ def test_a_bonded_block_is_that_of_small_strains_where_it_is_lightly_pressed() -
     assert slope == pytest.approx(middle.balance.force, rel=1e-6)
 
 
+@pytest.mark.parametrize("unit", [1.0, 1e-3])
+def test_under_a_tip_a_mesh_serves_depths_up_to_twice_its_shallowest_and_under_a_sphere_all(unit: float) -> None:
+    """In any order that they are asked in, and in any unit."""
+    depth = unit * np.array([3.2, 1.0, 1.5, 9.0, 2.1, 2.0, 4.1, 4.3])
+    assert pressing._together(Cone(18.0), depth) == [[1, 2, 5], [4, 0, 6], [7], [3]]
+    assert pressing._together(Sphere(1.0), depth) == [[1, 2, 5, 4, 0, 6, 7, 3]]
+
+
 def test_under_a_steep_cone_every_depth_answers_alike() -> None:
     """F ~ depth^2 at any strain, since nothing but the depth has a length: shallow and deep, not lost at the tip."""
     pressed = replace(sphere(0.3), shape=Cone(18.0))
