@@ -336,7 +336,7 @@ def test_of_several_contacts_the_tolerance_is_met_that_all_of_them_meet(worst: i
     """Each that misses is named by its number, and no other."""
     parts = [
         {name: Quantity(1.0, {"duration": error}.get(name, 1e-4), "") for name in UNITS}
-        for error in (np.roll([3.9e-2, 1.1e-2], worst).tolist() + [5e-4])
+        for error in (*np.roll([3.9e-2, 1.1e-2], worst).tolist(), 5e-4)
     ]
     found: Any = SimpleNamespace(numerics=SimpleNamespace(tolerance=1e-3), parts=tuple(parts))
     scene: Any = SimpleNamespace(motion=SimpleNamespace(impacts=3))

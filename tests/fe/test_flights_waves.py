@@ -214,7 +214,9 @@ def test_a_flight_takes_as_many_steps_of_each_length_as_it_waits_and_then_halves
     left, halving = flight - time, [length]
     while length > 1.0:
         length *= 0.5
-        halving += [length] * (1 + math.floor(left / length)) if length == 1.0 else [length] * (2 if left > length else 1)
+        halving += (
+            [length] * (1 + math.floor(left / length)) if length == 1.0 else [length] * (2 if left > length else 1)
+        )
         left %= length
     assert flights.lengths == growing + halving
     assert flights.landing(still, 0.0) is None
@@ -310,8 +312,28 @@ def test_a_striker_that_leaves_between_two_steps_has_left_where_and_as_fast_as_i
     assert np.array(list(rest.values())) == pytest.approx(0.0, abs=1e-12)
 
 
+def test_a_striker_that_still_presses_at_the_end_is_told_up_to_there() -> None:
+    """Row for row: depths, the momentum that the force took, half widths where it presses, and how many problems."""
+    mass, velocity, gravity, step = 2.0, 0.7, 0.2, 0.1
+    whole, _ = bounced(mass, velocity, gravity, step)
+    found = Motion(whole.samples[:12], whole.final, 1)
+    scene: Any = SimpleNamespace(
+        profile=SimpleNamespace(exponent_of_force=1.0), reduced_mass=mass, velocity=velocity, gravity=gravity
+    )
+    moving: Any = SimpleNamespace(endless=False, places=np.array([-2.0, -1.0, 1.0, 2.0]))
+    march = impact.record(moving, found, scene)
+    assert not march.separated
+    assert march.end_spread == march.first_force == 0.0
+    assert march.time == pytest.approx(step * np.arange(12))
+    assert march.depth == pytest.approx([float(sample.displacement[0]) for sample in found.samples])
+    speed = np.array([float(sample.velocity[0]) for sample in found.samples])
+    assert march.impulse == pytest.approx(mass * (velocity - speed) + mass * gravity * march.time)
+    assert march.radius_time == pytest.approx(march.time[1:]), "at touch nothing presses yet"
+    assert march.work == (11, 11, 12)
+
+
 def test_energy_at_the_end_is_what_goes_in_less_what_is_told_and_nothing_is_radiated_that_no_wave_takes() -> None:
-    """Of 2 J: what a mass of 3 kg at 0.5 m/s has, what else moves and is strained, heat, and what steps and contact lose."""
+    """Of 2 J: what a mass of 3 kg at 0.5 m/s has, what else moves and is strained, heat, and what is lost."""
     here, none = np.array([-0.5]), np.zeros(1)
     held = Energies(2.0, 0.4, 0.03, 0.2, 0.01, 0.05, 0.1, 0.002)
     last = Sample(1.0, 0.0, 0.0, none, here, none, none, here, held, 1)

@@ -815,7 +815,7 @@ def test_the_squared_radius_is_told_at_shares_of_any_contact(rows: int) -> None:
 
 @pytest.mark.parametrize("end", [1e-3, 0.5])
 def test_a_contact_that_is_cut_off_is_as_wide_at_its_end_as_it_was_last(end: float) -> None:
-    """Growing all the while, a^2 = 3 t, of radii that are not one; of one that has parted nothing presses at the end."""
+    """Growing all the while, a^2 = 3 t, of radii that are not one; of what has parted nothing presses at last."""
     time = end * np.linspace(0.0, 1.0, 41)
     march: Any = SimpleNamespace(time=time, depth=time, separated=False, radius=np.sqrt(3.0 * time[1:]))
     march.radius_time = time[1:]
