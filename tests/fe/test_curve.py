@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -48,10 +50,82 @@ def force_of(time: np.ndarray, power: float) -> np.ndarray:
     return np.asarray((4.0 * time * (1.0 - time**2)) ** power)
 
 
-@pytest.mark.parametrize("within", [1e-4, 1e-2, 0.3])
+def marched(steps: int, end: float, size: float, cut: float) -> tuple[Curve, np.ndarray]:
+    """A force size t (end - t) up to a share ``cut`` of its end, of 3 kg at 2 m/s under 5 m/s2, and its rows' times."""
+    time = cut * end * np.linspace(0.0, 1.0, steps + 1) ** 2
+    impulse, squared = size * time**2 * (end / 2.0 - time / 3.0), 7.0 * time * (end - time)
+    march: Any = SimpleNamespace(
+        time=time, depth=4.0 * time - 3.0 * time**2, impulse=impulse, first_force=0.0, radius_time=time[1:],
+        radius=np.sqrt(squared[1:]), separated=cut == 1.0, end_spread=0.03 * end, energy={"in": 2.0},
+    )  # fmt: skip
+    return Curve.of(march, Strike(lambda r: r**2, 3.0, 2.0, 5.0, Relaxation(1.0), 10.0)), time
+
+
+@pytest.mark.parametrize("end", [1.0, 1e-3])
+@pytest.mark.parametrize("cut", [1.0, 0.7])
+def test_a_curve_tells_of_a_force_that_is_a_parabola_all_that_there_is(end: float, cut: float) -> None:
+    """Force, impulse, depth, speed and radius at any time, in closed form; nothing before the touch, and after the end
+    of what has parted. What is cut off presses on.
+    """
+    size = 30.0 / end**2
+    curve, time = marched(40, end, size, cut)
+    last = cut * end
+    asked = last * np.array([0.0, 1e-4, 0.3, 0.501, 0.77, 0.9999])
+    found = curve.read(asked)
+    np.testing.assert_allclose(found.force, size * asked * (end - asked), rtol=1e-9, atol=1e-9 * size * end**2)
+    np.testing.assert_allclose(found.impulse, size * asked**2 * (end / 2.0 - asked / 3.0), rtol=1e-9)
+    np.testing.assert_allclose(found.depth, 4.0 * asked - 3.0 * asked**2, rtol=1e-9, atol=1e-15)
+    velocity = 2.0 + 5.0 * asked - found.impulse / 3.0
+    np.testing.assert_allclose(curve.velocity(asked, found.impulse), velocity, rtol=1e-9)
+    np.testing.assert_allclose(curve.radius_at(time[1:-1]) ** 2, 7.0 * time[1:-1] * (end - time[1:-1]), rtol=1e-9)
+    held = size * last * (end - last)
+    outside = curve.force(np.array([-0.1 * last, last, 1.1 * last]))
+    assert outside == pytest.approx([0.0, *2 * [0.0 if cut == 1.0 else held]], abs=1e-9 * size * end**2)
+    assert curve.last_step == pytest.approx(time[-2])
+    assert (curve.duration, curve.end_spread, curve.separated) == (last, 0.03 * end, cut == 1.0)
+    impulse = size * last**2 * (end / 2.0 - last / 3.0)
+    left = impulse / 3.0 - 2.0 - 5.0 * last
+    assert curve.leaving_speed == pytest.approx(left)
+    parted = {"duration": last, "restitution": left / 2.0} if cut == 1.0 else {"duration": None, "restitution": None}
+    told = {"peak_force": size * end**2 / 4.0, "peak_time": end / 2.0, "impulse": impulse, **parted}
+    told["peak_depth"] = 4.0 / 3.0 if last > 2.0 / 3.0 else 4.0 * last - 3.0 * last**2
+    for name, value in curve.quantities.items():
+        assert value == (told[name] if told[name] is None else pytest.approx(told[name], rel=1e-6)), name
+
+
+@pytest.mark.parametrize("steps", [40, 41])
+def test_rows_left_out_by_turns_leave_both_ends_and_what_alternates_is_evened_away(steps: int) -> None:
+    """The rest is a polynomial of the fifth degree, which any of its rows tell."""
+    x = np.linspace(0.0, 1.0, steps + 1)
+    mean = 0.3 + x**2 - 2.0 * x**5
+    jitter = 0.01 * (-1.0) ** np.arange(steps + 1)
+    jitter[[0, -1]] = 0.0
+    curve = replace(bump(steps, 0.0), x=x, mean_force=mean + jitter)
+    thin = curve.thinned()
+    kept = sorted({*range(0, steps + 1, 2), steps})
+    assert np.array_equal(thin.x, x[kept])
+    assert np.array_equal(thin.mean_force, (mean + jitter)[kept])
+    assert np.array_equal(thin.depth, curve.depth[kept])
+    even = curve.evened()
+    assert np.array_equal(even.x, x[kept])
+    near_ends = 0.01 * (x[kept] < 8.0 / steps) + 0.01 * (x[kept] > 1.0 - 8.0 / steps)
+    assert np.all(np.abs(even.mean_force - mean[kept]) <= near_ends + 1e-12)
+    assert np.array_equal(even.mean_force[[0, -1]], mean[[0, -1]])
+    plain = replace(curve, mean_force=mean)
+    asked = np.array([0.0, 0.013, 0.4, 0.999])
+    read = plain.read_at(asked)
+    np.testing.assert_allclose(read.mean_force, 0.3 + asked**2 - 2.0 * asked**5, atol=1e-12)
+    np.testing.assert_allclose(read.depth, asked**2, atol=1e-12)
+    assert np.array_equal(read.x, asked)
+
+
+@pytest.mark.parametrize("within", [1e-4, 1e-2, 0.3, 8.9])
 @pytest.mark.parametrize("power", [1.0, 1.5, 2.0])
 def test_a_branch_that_relaxes_within_the_first_step_is_read_as_its_law_says(power: float, within: float) -> None:
-    """A striker that nothing slows, a branch ``within`` the first of forty steps, ten thousand times as stiff."""
+    """A striker that nothing slows, a branch ``within`` the first of forty steps, ten thousand times as stiff.
+
+    Or within the first three, which are nine times as long.
+    """
     x = np.linspace(0.0, 1.0, 41)
     relaxation = Relaxation(1.0, (1e4,), (within * x[1] ** 2,))
     strike = Strike(lambda r: r**2, 1.0, 1.0, 0.0, relaxation, 10.0, power=power)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -330,6 +331,61 @@ def test_a_striker_that_still_presses_at_the_end_is_told_up_to_there() -> None:
     assert march.impulse == pytest.approx(mass * (velocity - speed) + mass * gravity * march.time)
     assert march.radius_time == pytest.approx(march.time[1:]), "at touch nothing presses yet"
     assert march.work == (11, 11, 12)
+
+
+@dataclass(frozen=True)
+class Thrown:
+    """What a contact asks of a scene."""
+
+    reduced_mass: float
+    velocity: float
+    gravity: float
+    profile: Any
+    motion: Any
+
+
+@pytest.mark.parametrize("impacts", [1, 2])
+@pytest.mark.parametrize("ends", [12, 40])
+@pytest.mark.parametrize("longest", [8, 100])
+def test_one_of_several_contacts_that_swings_for_long_is_given_up_and_any_other_told_by_its_own_clock(
+    monkeypatch: pytest.MonkeyPatch, impacts: int, ends: int, longest: int
+) -> None:
+    """A mass on a spring that leaves after some thirty steps: a lone contact may take all the time that there is."""
+    mass, velocity, gravity, step, touched = 2.0, 0.7, 0.2, 0.15, 1.5
+    whole, _ = bounced(mass, velocity, gravity, step)
+    given = list[float]()
+
+    def onwards(steppers: Any, moment: Any, choices: Any, until: float, watch: Any, ending: Any) -> Motion:
+        given.append(until)
+        samples = tuple(one._replace(time=one.time + touched) for one in whole.samples if one.time <= until + 1e-9)
+        assert [ending(one) for one in samples] == [impact.left(one) for one in samples]
+        final: Any = SimpleNamespace(time=samples[-1].time)
+        return Motion(samples, final, 1)
+
+    monkeypatch.setattr(impact, "onwards", onwards)
+    bouncer, counted = object.__new__(WaveBouncer), list[float]()
+    profile, nothing = SimpleNamespace(exponent_of_force=1.0), cast("Any", None)
+    bouncer._scene = cast("Any", Thrown(mass, 99.0, gravity, profile, SimpleNamespace(impacts=impacts)))
+    bouncer._moving = cast("Any", SimpleNamespace(endless=False, places=np.array([-2.0, -1.0, 1.0, 2.0]), watch=None))
+    bouncer._counted, bouncer._longest, bouncer._steps = counted.append, longest * step, 70
+    bouncer._choices = bouncer.steppers = bouncer._moment = nothing
+    strike: Any = SimpleNamespace(velocity=velocity, touched_at=touched, end_time=ends * step)
+    several_for_long = impacts > 1 and longest < min(ends, len(whole.samples) - 1)
+    if several_for_long:
+        with pytest.raises(TooManySteps):
+            bouncer.contact(strike)
+        assert given == [longest * step]
+        return
+    march = bouncer.contact(strike)
+    assert given == [pytest.approx(step * (min(longest, ends) if impacts > 1 else ends))]
+    steps = min(ends, len(whole.samples) - 1)
+    assert march.separated == (ends > steps)
+    assert march.time[:-1] == pytest.approx(step * np.arange(steps), abs=1e-12)
+    assert march.impulse[0] == pytest.approx(0.0, abs=1e-12), "it came as fast as the strike says"
+    assert len(counted) == steps + 1
+    assert bouncer._steps == 70 + steps
+    assert bouncer._moment.state.time == pytest.approx(touched + steps * step)
+    assert bouncer._moment.energies == whole.samples[steps].energies
 
 
 def test_energy_at_the_end_is_what_goes_in_less_what_is_told_and_nothing_is_radiated_that_no_wave_takes() -> None:
