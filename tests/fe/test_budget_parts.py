@@ -24,7 +24,7 @@ from fe_contact.budget.certify import (
     _judging,
     other_mesh,
 )
-from fe_contact.budget.plan import Plan
+from fe_contact.budget.plan import ELEMENTS, Plan
 from fe_contact.budget.refine import AIM, FACTOR, Growth, factors, missing
 from fe_contact.budget.runs import AnyRuns, Runs
 from fe_contact.budget.several import Row
@@ -225,6 +225,8 @@ def test_another_mesh_tells_of_the_error_of_one_that_converges(
         assert mesh.order == 2 * order
         assert mesh.elements_per_contact >= elements
         assert nodes_of >= (4.0 * mesh.order if nodes is None else nodes)
+        enough = ELEMENTS if nodes is None else nodes / mesh.order
+        assert mesh.elements_per_contact <= max(elements, enough), "no finer than what is usual: it costs as much"
         assert trusted > 2.0, "no order shows: the finer one errs by less than the coarser"
         return
     power = {3: 1, 4: 2}[order]

@@ -25,7 +25,8 @@ from fe_contact.budget.certify import (
     _time_steps,
     trust,
 )
-from fe_contact.budget.curve import Curve, extrapolated, squared_radius
+from fe_contact.budget.curve import STENCIL, Curve, extrapolated, squared_radius
+from fe_contact.budget.plan import STEPS_AT_DEFAULT
 from fe_contact.budget.several import _error, _flight, _late
 from fe_contact.budget.variation import RIPPLED, SAFETY, STEEPER, Softening, Variation
 from fe_contact.settings import Numerics, WaveNumerics
@@ -934,6 +935,23 @@ def test_where_finer_steps_fail_other_settings_are_told_by_no_fewer_than_were_as
     found = _time_steps(lambda one: TRUTH if one.steps <= finest else None, few, False)
     assert (None in found.changes) == (failing < 4), "then nothing is known of the steps"
     assert few.steps <= found.cheap <= finest, "with those that fail nothing would be known of any setting"
+
+
+@pytest.mark.parametrize("steps", [STEPS_AT_DEFAULT, 4 * STENCIL - 4])
+def test_usual_steps_are_halved_twice_and_fewer_than_tell_a_polynomial_are_doubled_twice(
+    steps: int, settings: Numerics
+) -> None:
+    """A quarter of the steps that are usual costs little; what is quartered has the rows of a polynomial at least."""
+    asked = list[int]()
+
+    def run(one: Numerics) -> Curve:
+        asked.append(one.steps)
+        return made_up(one.steps, np.zeros_like)
+
+    found = _time_steps(run, settings.varied(steps=steps), False)
+    times = (1.0, 0.5, 0.25) if steps >= 4 * STENCIL else (1.0, 2.0, 4.0)
+    assert asked == [steps * one for one in times]
+    assert found.cheap == asked[-1], "other settings are told by the march that is at hand"
 
 
 @pytest.mark.parametrize("failing", [2, 4])
