@@ -698,6 +698,39 @@ def test_a_mesh_that_stays_counts_longer_and_weighs_more_where_the_force_jitters
         assert middle.errors[name] == pytest.approx(weights.get(name, 1.0) * plain.errors[name])
 
 
+def dented(at: float, size: float = 1e-3) -> Curve:
+    """Path and mean force off in a hundredth of the contact about a share of it, and nowhere else."""
+    return made_up(STEPS, lambda s: size * np.maximum(1.0 - ((s - at) / 0.012) ** 2, 0.0) ** 2)
+
+
+def when(deep: float) -> float:
+    """The share of the contact, past the turn, after which the path is such a share of the largest depth."""
+    return 0.3 / 0.589 * (1.0 + float(np.sqrt(1.0 - deep)))
+
+
+@pytest.mark.parametrize("stays", [True, False])
+def test_what_a_setting_changes_counts_for_a_quantity_where_it_is_read_and_nowhere_else(
+    stays: bool, settings: Numerics
+) -> None:
+    """The largest depth where it is nearly reached, or on a mesh that stays above six tenths of it; speed, impulse and
+    end in the last quarter of the contact; the history everywhere.
+    """
+
+    def change(at: float) -> dict[str, float]:
+        _, found = _by_mesh(lambda one: TRUTH if one == settings else dented(at), settings, settings, not stays, {})
+        assert found is not None
+        return found.errors
+
+    deepest, near, beside, away = (change(when(deep)) for deep in (1.0, 0.9, 0.66, 0.54))
+    for one, counts in ((deepest, True), (near, stays), (beside, stays), (away, False)):
+        assert (one["peak_depth"] > 1e-5) == counts
+    for at in (0.70, 0.80):
+        found = change(at)
+        for name in ("impulse", "restitution", "duration"):
+            assert (found[name] > 1e-5) == (at > 0.75), (name, at)
+        assert found["history_l2"] > 1e-5
+
+
 @pytest.mark.parametrize("trusted", [0.5, 5.0])
 def test_the_band_of_a_force_counts_the_touch_and_the_steps_without_an_order_more(trusted: float) -> None:
     """And a last step more than others only where it is cut off."""
