@@ -37,7 +37,8 @@ from fe_contact.settings import WaveNumerics
 from fe_contact.steppers.steps import Work
 from fe_contact.waves import certify
 from fe_contact.waves.certify import Waves
-from fe_contact.waves.plan import DEFAULTS
+from fe_contact.waves.plan import DEFAULTS, FEWEST
+from fe_contact.waves.plan import ELEMENTS as ELEMENTS_OF_WAVES
 from lumped.errors import NotReached
 from lumped.result.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS, Quantity
 
@@ -236,6 +237,15 @@ def test_another_mesh_tells_of_the_error_of_one_that_converges(
     assert ratio >= 2.0 if finer else ratio == 0.5
     error, other = elements**-power, mesh.elements_per_contact**-power
     assert error <= trusted * abs(error - other) <= 1.2500001 * (error if ratio <= 2.0 else 2.0 * error)
+
+
+def test_the_usual_mesh_of_waves_is_halved_and_the_coarsest_doubled(numerics: WaveNumerics) -> None:
+    """Half as fine a one costs a quarter, but what half of few nodes change may vanish by chance."""
+    for elements, finer in ((ELEMENTS_OF_WAVES, False), (FEWEST["elements"], True)):
+        given = numerics.varied(order=DEFAULTS["order"], elements_per_contact=elements)
+        mesh, _ = certify.tells_of_mesh(given)
+        assert (mesh.elements_per_contact > elements) == finer
+        assert mesh.order == given.order
 
 
 def test_shares_of_the_tolerance_are_relative_or_absolute_and_of_what_is_known() -> None:
