@@ -160,6 +160,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/steppers/struck.py", "FIRST", ""): GUESS,
     ("fe_contact/steppers/struck.py", "LEAST_KEPT", ""): GUESS,
     ("fe_contact/steppers/scaled_surface.py", "COARSE", ""): GUESS,
+    ("fe_contact/steppers/scaled_surface.py", "EDGE", "1e-09 ->"): "an edge but for rounding",
     ("fe_contact/steppers/scaled_surface.py", "POINTS_A_STEP", "8 -> 9"): WORK,
     ("fe_contact/steppers/scaled_surface.py", "Stepper._guesses", "1.0 ->"): GUESS,
     ("fe_contact/steppers/scaled_surface.py", "Stepper._guesses", "if len(steps)"): GUESS,

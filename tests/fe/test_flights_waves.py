@@ -12,14 +12,18 @@ import pytest
 import scipy.sparse as sparse
 from scipy.optimize import brentq
 
+from fe_contact.budget.plan import EARLY_PEAK
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.dynamics.body import BodyWithMass, Part, Pressing, state_of, undeformed
-from fe_contact.dynamics.march import Energies, Moment, Motion, Sample, Steppers, account_at_start
+from fe_contact.dynamics.march import MOST_WORK, Energies, Moment, Motion, Sample, Steppers, account_at_start
 from fe_contact.dynamics.stepping import Enforced, ImplicitStepper
 from fe_contact.errors import TooManySteps
 from fe_contact.march.impacts import Grounded
+from fe_contact.settings import WaveNumerics
+from fe_contact.steppers.steps import Strike
 from fe_contact.waves import impact
-from fe_contact.waves.impact import Flights, WaveBouncer
+from fe_contact.waves.impact import Flights, WaveBouncer, choices_of
+from fe_contact.waves.plan import DEFAULTS, MARCHES
 from lumped.materials import Relaxation
 
 penalty = ENFORCEMENTS.get("penalty")
@@ -162,6 +166,60 @@ def test_where_no_touch_follows_it_is_said_why(cases: list[Case], ends: float, w
     assert WaveBouncer.touch(bouncer, nothing, nothing) is why
     scene.gravity = 0.0
     assert WaveBouncer.touch(bouncer, nothing, nothing) is Grounded.NO_GRAVITY
+
+
+def test_a_touch_begins_the_next_strike_where_when_and_as_fast_as_the_surfaces_meet(cases: list[Case]) -> None:
+    """By the clock of all contacts; unless these and the flights have taken all the work that one march may be."""
+    case, nothing = cases[0], cast("Any", None)
+    watch = sparse.csr_matrix(np.array([[1.0, 1.0]]))
+
+    def bouncer(steps: float) -> Any:
+        flights = Flights(Steppers(case.body, Enforced(penalty, 1.0)), 0.1, 8)
+        scene = SimpleNamespace(gravity=case.gravity, end_time=math.inf)
+        moving = SimpleNamespace(body=case.body, watch=watch)
+        return SimpleNamespace(_scene=scene, _moving=moving, flights=flights, _steps=steps, _moment=case.parted)
+
+    before = Strike(lambda r: r**2, 1.0, 9.0, case.gravity, RELAXATION, 1e9, touched_at=-7.0)
+    flown = bouncer(0)
+    found = WaveBouncer.touch(flown, before, nothing)
+    assert isinstance(found, Strike)
+    state = flown._moment.state
+    assert state.time == pytest.approx(case.touch(), rel=1e-2)
+    assert found.touched_at == pytest.approx(state.time)
+    assert found.end_time == pytest.approx(1e9 - state.time - 7.0)
+    assert found.depth == pytest.approx(state.displacement.sum())
+    assert found.velocity == pytest.approx(state.velocity.sum())
+    most = MOST_WORK / MARCHES / case.body.size
+    assert isinstance(WaveBouncer.touch(bouncer(0.999 * most), before, nothing), Strike)
+    assert WaveBouncer.touch(bouncer(1.001 * most), before, nothing) is Grounded.MANY
+
+
+@pytest.mark.parametrize(("steps", "patience"), [(200, 20), (12, 2)])
+def test_contacts_and_flights_take_the_steps_and_the_penalty_of_their_settings(
+    cases: list[Case], steps: int, patience: int
+) -> None:
+    """The penalty over the stiffness until the force peaks, a dashpot too; flights wait a tenth of a contact.
+
+    A contact may last some ten times as long as planned, but not a hundred times.
+    """
+    given = {"elements_per_contact": 4.0, "penalty": 100.0, "far_radius": 20.0, "peak_share": 0.125, "steps": steps}
+    numerics = WaveNumerics(**DEFAULTS | given | {"tolerance": 3e-3, "contact_radius": 2e-3, "contact_time": 4e-3})
+    body, modulus = cases[0].body, Relaxation(2.0, (3.0,), (1.0,), 0.4)
+    moving: Any = SimpleNamespace(body=body, velocity=np.array([0.0, 0.6]))
+    bouncer = WaveBouncer(moving, cast("Any", SimpleNamespace(contact_modulus=modulus)), numerics)
+    chosen = bouncer._choices
+    assert chosen.enforced.penalty == pytest.approx(100.0 * (2.0 + 3.0 + 0.4 / (0.125 * 4e-3)) / 2e-3)
+    assert chosen.step * 2 ** len(chosen.doubled) == pytest.approx(4e-3 / steps)
+    assert chosen.doubled[0] / 2.0 < 0.125 * 4e-3 < chosen.doubled[0] or not chosen.doubled
+    assert np.diff(np.log2(chosen.doubled)) == pytest.approx(np.ones(len(chosen.doubled) - 1))
+    assert chosen.doubled[-1] == pytest.approx(EARLY_PEAK * 4e-3)
+    assert (bouncer.flights._step, bouncer.flights._patience) == (chosen.step, patience)
+    assert 5.0 * 4e-3 < bouncer._longest < 50.0 * 4e-3
+    assert bouncer._moment.state.velocity == pytest.approx([0.0, 0.6])
+    assert bouncer._moment.energies == account_at_start(body, bouncer._moment.state)
+    assert bouncer._steps == 0
+    late = choices_of(cast("Any", SimpleNamespace(contact_modulus=modulus)), numerics.varied(peak_share=0.5))
+    assert (late.step, late.doubled) == (4e-3 / steps, ())
 
 
 class Clocked(Flights):
