@@ -308,6 +308,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/indentation.py", "settings", "1.0 ->"): "the scales of an impact, which an indentation has not",
     ("fe_contact/indentation.py", "settings", "0.5 ->"): "the scales of an impact, which an indentation has not",
     ("fe_contact/indentation.py", "FEWEST_SOFT", "4 -> 5"): "a depth more tells what the penalty changes",
+    ("fe_contact/indentation.py", "press", "growth * float(radii[i]) ->"): GUESS,
     ("fe_contact/indentation.py", "FEWEST", "12 -> 24"): "more depths tell what the mesh changes",
     ("fe_contact/indentation.py", "Indenting.finer", "found.budget[cause].max"): "one error for every depth",
     ("fe_contact/solids/block.py", "press", "np.min(along) ->"): GUESS,
