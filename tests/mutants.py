@@ -278,6 +278,8 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/budget/certify.py", "_trusted_order", "1.0 ->"): "a factor of both changes that are compared",
     ("fe_contact/budget/variation.py", "_jitter", "1.0 ->"): "a factor that the distance of two histories is without",
     ("fe_contact/budget/variation.py", "_work", "a tenth"): "a factor of both works that are compared",
+    ("fe_contact/budget/curve.py", "Curve.evened", "1 -> 2"): "the last row, beyond all that are told from it",
+    ("fe_contact/budget/curve.py", "SHARES", "601 ->"): "how dense the places are at which a curve is looked at",
     ("fe_contact/budget/curve.py", "INSIDE", ""): "how many places are put into an interval",
     ("fe_contact/steppers/scaled_surface.py", "_missed", "EDGE * wide"): "a guard against dividing by zero itself",
     ("fe_contact/steppers/scaled_surface.py", "_missed", "BEYOND * stepper"): "a height where nothing ever touches",

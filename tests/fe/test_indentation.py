@@ -191,6 +191,15 @@ def test_a_lone_depth_is_judged_like_one_of_many() -> None:
     assert lone.quantities == {}
 
 
+def test_where_depths_are_cheap_a_lone_one_is_pressed_beside_a_dozen_and_many_alone() -> None:
+    """Two contact problems each; the others are in the work, not in the answer."""
+    for depths, pressed in (((1e-4,), 1 + FEWEST), (tuple(np.linspace(1e-4, 2e-4, FEWEST).tolist()), FEWEST)):
+        found = Case(Sphere(1.0), HalfSpace(), 0.3, depths).found(tolerance=0.05)
+        assert found.work["contact_problems"] == 2 * pressed
+        assert found.depth.tolist() == list(depths)
+        assert found.force.size == found.contact_radius.size == found.force_error.size == len(depths)
+
+
 def test_twenty_depths_cost_two_contact_problems_each_and_few_iterations() -> None:
     depths = tuple(map(float, np.geomspace(1e-5, 4e-4, 20)))
     for target in (Layer(2e-3, "bonded"), HalfSpace()):

@@ -731,6 +731,26 @@ def test_what_a_setting_changes_counts_for_a_quantity_where_it_is_read_and_nowhe
         assert found["history_l2"] > 1e-5
 
 
+@pytest.mark.parametrize("duration", [1.0, 1e-3])
+def test_a_viscous_force_has_no_order_within_two_steps_of_the_turn_of_its_path(duration: float) -> None:
+    """Of the run with longer steps, and only of the change that is told with its time without an order."""
+    viscous = replace(STRIKE, relaxation=Relaxation(1.0, viscosity=0.1))
+    fine, coarse = (replace(made_up(n, np.zeros_like), strike=viscous, duration=duration) for n in (80, 40))
+    rows = duration * (np.arange(41) / 40.0) ** 2
+    top = int(coarse.depth.argmax())
+    inside, outside = rows[[top - 2, top, top + 2]], rows[[top - 3, top + 3, 0, 40]]
+    beside = np.concatenate([0.999 * rows[[top - 2]], 1.001 * rows[[top + 2]], outside])
+    found = Variation(fine, coarse, 1.0, unresolved=0.0)
+    inside *= [1.0001, 1.0, 0.9999]
+    assert found._about_turn(inside).all()
+    assert not found._about_turn(beside).any()
+    assert not Variation(fine, coarse, 1.0)._about_turn(inside).any()
+    elastic = replace(coarse, strike=STRIKE)
+    assert not Variation(fine, elastic, 1.0, unresolved=0.0)._about_turn(inside).any()
+    for depth, turns in ((coarse.x, [1.0001 * rows[38], rows[40]]), (-coarse.x, [0.0, 0.9999 * rows[2]])):
+        assert Variation(fine, replace(coarse, depth=depth), 1.0, unresolved=0.0)._about_turn(np.array(turns)).all()
+
+
 @pytest.mark.parametrize("trusted", [0.5, 5.0])
 def test_the_band_of_a_force_counts_the_touch_and_the_steps_without_an_order_more(trusted: float) -> None:
     """And a last step more than others only where it is cut off."""
