@@ -137,6 +137,7 @@ def test_contact_that_is_lost_is_looked_for_in_halves_of_a_step_until_they_are_t
     assert last <= cut < last + 2.0 * shortest
     assert march.time[-1] - last == pytest.approx(shortest, rel=1e-9) or march.time[-1] == last
     assert 0.5 * stepper.tried[-1] < shortest <= stepper.tried[-1]
+    assert stepper.tried[-2] == 2.0 * stepper.tried[-1]
 
 
 @pytest.mark.parametrize("share", [0.5, 1e-3])
