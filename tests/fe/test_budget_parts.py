@@ -29,17 +29,18 @@ from fe_contact.budget.refine import AIM, FACTOR, Growth, factors, missing
 from fe_contact.budget.runs import AnyRuns, Runs
 from fe_contact.budget.several import Row
 from fe_contact.budget.solved import SolvedBy
-from fe_contact.budget.variation import UNORDERED, factor
+from fe_contact.budget.variation import SAFETY, UNORDERED, factor
 from fe_contact.march.impacts import Followed
 from fe_contact.plastic import course
 from fe_contact.plastic.indent import YieldingWay
 from fe_contact.settings import WaveNumerics
-from fe_contact.steppers.steps import Work
+from fe_contact.steppers.steps import Strike, Work
 from fe_contact.waves import certify
 from fe_contact.waves.certify import Waves
 from fe_contact.waves.plan import DEFAULTS, FEWEST
 from fe_contact.waves.plan import ELEMENTS as ELEMENTS_OF_WAVES
 from lumped.errors import NotReached
+from lumped.materials import Relaxation
 from lumped.result.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS, Quantity
 
 SETTINGS: dict[str, Any] = {"tolerance": 3e-3, "steps": 200, "contact_radius": 1e-3, "contact_time": 1e-3}
@@ -385,6 +386,31 @@ def test_rows_of_a_curve_with_waves_follow_the_tolerance(numerics: WaveNumerics)
     assert more - 1 == pytest.approx(2 * (rows - 1), abs=1)
     assert of_half == rows
     assert len(certify._rows(40_000, many, 1.0)) - 1 == pytest.approx(2 * (rows - 1), abs=1)
+
+
+def test_what_rows_of_a_curve_with_waves_leave_is_told_by_half_of_them(numerics: WaveNumerics) -> None:
+    """A force t (1 - t) whose mean jitters from step to step, of which a local cubic leaves little in any row.
+
+    Order two is trusted of the rows: a third of the change, and the quarter more that is safe.
+    """
+    time = np.linspace(0.0, 1.0, 801)
+    jitter = 1e-3 * np.where(time > 0.0, (-1.0) ** np.arange(801), 0.0)
+    march: Any = SimpleNamespace(
+        time=time, depth=time, impulse=time**2 * (0.5 - time / 3.0) + time * jitter, first_force=0.0,
+        radius_time=time[1:], radius=time[1:], separated=True, end_spread=0.0, energy={},
+    )  # fmt: skip
+    strike = Strike(lambda r: r**2, 1.0, 0.1, 0.0, Relaxation(1.0), 10.0)
+    given = numerics.varied(steps=800, tolerance=3e-3)
+    whole, found = certify.curve_of(march, strike, given), certify.reading(march, strike, given)
+    rows = whole.x**2
+    mean = rows * (0.5 - rows / 3.0)
+    assert np.abs(whole.mean_force - mean)[1:-1].max() < 0.5e-3, "half of it at the ends, and less between"
+    assert whole.depth == pytest.approx(rows)
+    assert np.array_equal(found.first.x, whole.x)
+    assert np.array_equal(found.first.mean_force, whole.mean_force)
+    assert len(found.second.x) - 1 == pytest.approx(0.5 * (len(whole.x) - 1), abs=1)
+    assert found.second.x[[0, -1]].tolist() == [0.0, 1.0]
+    assert found.factor == pytest.approx(SAFETY / (2**2 - 1))
 
 
 def test_the_deepest_of_several_contacts_is_what_may_be_too_deep(
