@@ -29,6 +29,7 @@ from fe_contact.budget.curve import STENCIL, Curve, extrapolated, squared_radius
 from fe_contact.budget.plan import STEPS_AT_DEFAULT
 from fe_contact.budget.several import _error, _flight, _late
 from fe_contact.budget.variation import RIPPLED, SAFETY, STEEPER, Softening, Variation
+from fe_contact.relaxing_impact import _throughout
 from fe_contact.settings import Numerics, WaveNumerics
 from fe_contact.steppers.steps import Strike
 from fe_contact.waves import certify as certify_waves
@@ -953,6 +954,24 @@ def test_a_dashpot_takes_an_order_by_the_share_that_it_carries_whatever_relaxes_
     for name in ("impulse", "restitution", "peak_depth"):
         assert little[name] < without[name], name
         assert much[name] == pytest.approx(1.0, abs=1e-3), name
+
+
+@pytest.mark.parametrize("duration", [1.0, 1e-3])
+@pytest.mark.parametrize("late", [1e-5, 0.05])
+def test_a_body_strained_much_errs_in_its_duration_by_no_less_a_share_than_in_its_force(
+    duration: float, late: float
+) -> None:
+    """Two meshes may agree in when a contact ends by chance; where they do not it is left as it is."""
+    first = replace(TRUTH, duration=duration)
+    other = replace(made_up(STEPS, lambda s: np.full_like(s, 0.01)), duration=duration * (1.0 + late))
+    change = Variation(first, replace(other, depth=first.depth), 1.3)
+    whole, values = _throughout(change).errors, first.quantities
+    force, end = change.errors["peak_force"] / values["peak_force"], change.errors["duration"] / values["duration"]
+    assert (force > end) == (late < 0.01)
+    assert whole["duration"] == pytest.approx(max(force, end) * duration)
+    assert whole | {"duration": 0.0} == pytest.approx(change.errors | {"duration": 0.0})
+    for same in (Variation(first, first, 1.0), Variation(*2 * [replace(first, separated=False)], 1.0)):
+        assert _throughout(same) is same
 
 
 def test_energy_that_is_lost_may_belong_to_any_term_that_there_is() -> None:
