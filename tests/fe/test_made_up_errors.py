@@ -1026,6 +1026,27 @@ def test_usual_steps_are_halved_twice_and_fewer_than_tell_a_polynomial_are_doubl
     assert found.cheap == asked[-1], "other settings are told by the march that is at hand"
 
 
+def test_steps_as_long_as_a_relaxation_under_a_flat_end_leave_the_finest_run_and_two_and_a_half_times_its_change(
+    settings: Numerics,
+) -> None:
+    """No order shows: the finer of two runs errs by less than twice their distance. Other settings take few steps."""
+    strike = replace(STRIKE, relaxation=Relaxation(1.0, (1.0,), (1.0 / STEPS,)))
+    runs = dict[int, Curve]()
+
+    def run(one: Numerics) -> Curve:
+        made = made_up(one.steps, lambda s: 1e-3 * s * STEPS / one.steps)
+        return runs.setdefault(one.steps, replace(made, strike=strike))
+
+    found = _time_steps(run, settings, True)
+    (change,), (jitter,) = found.changes, found.jitter
+    assert isinstance(change, Variation)
+    assert found.value is change.first is jitter.first is runs[STEPS]
+    assert change.second is runs[STEPS // 2]
+    assert (change.factor, jitter.factor) == (2.5, 1.0)
+    assert found.cheap == STEPS // 4 in runs
+    assert found.jitter_falls
+
+
 @pytest.mark.parametrize("failing", [2, 4])
 def test_where_fewer_steps_fail_nothing_is_known_of_them(settings: Numerics, failing: int) -> None:
     found = _time_steps(lambda one: TRUTH if one.steps != STEPS // failing else None, settings, False)

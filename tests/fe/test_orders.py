@@ -14,6 +14,7 @@ from fe_contact.budget import certify
 from fe_contact.budget.certify import LEAST_HALVED_SETTING, other_setting
 from fe_contact.budget.variation import SAFETY, Softening, Variation
 from fe_contact.settings import Numerics
+from fe_contact.steppers.flat_end import FlatEnd
 from fe_contact.steppers.steps import Strike
 from fe_contact.steppers.struck import Deformable
 from lumped.materials import Relaxation
@@ -179,3 +180,30 @@ def test_the_far_field_of_an_elastic_contact_takes_no_march_and_any_other_one_on
     assert found.factor == pytest.approx(SAFETY / 3.0 * (1.0 if far == 8.0 else 4.0))
     surfaces[mesh.varied(far_radius=other)] = surfaces[mesh]
     assert certify._far_field(*given) == ()
+
+
+@pytest.mark.parametrize("coarse", [False, True])
+def test_under_a_flat_end_one_stiffness_tells_of_mesh_penalty_and_far_field_by_their_orders(
+    coarse: bool, settings: Numerics
+) -> None:
+    """Of 3/2, one and two: a quarter more than each errs by. One that is doubled errs by more than that changes."""
+    given = {"elements_per_contact": 1.0, "penalty": 100.0, "far_radius": 4.0} if coarse else {}
+    numerics = settings.varied(**given)
+
+    def errors(one: Numerics) -> dict[str, float]:
+        mesh = (numerics.elements_per_contact / one.elements_per_contact) ** 1.5
+        far = (numerics.far_radius / one.far_radius) ** 2
+        return {"mesh": 1e-6 * mesh, "penalty": -2e-6 * numerics.penalty / one.penalty, "far_field": 3e-6 * far}
+
+    def surface(one: Numerics) -> FlatEnd:
+        return FlatEnd(7.0 * (1.0 + sum(errors(one).values())), 1.0, 10, 1.5)
+
+    value: Any = object()
+    runs: Any = SimpleNamespace(surface=surface)
+    found = certify._by_stiffness(runs, value, surface(numerics), numerics)
+    assert set(found) == {"mesh", "penalty", "far_field"}
+    for cause, error in errors(numerics).items():
+        (one,) = found[cause]
+        assert isinstance(one, Softening)
+        assert one.curve is value
+        assert one.share == pytest.approx(1.25 * abs(error), rel=1e-2), cause
