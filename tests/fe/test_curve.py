@@ -136,6 +136,27 @@ def test_a_branch_that_relaxes_within_the_first_step_is_read_as_its_law_says(pow
     np.testing.assert_allclose(curve.force(time), true, rtol=1e-6, atol=1e-12 * true[-1])
 
 
+@pytest.mark.parametrize(
+    ("flat", "within", "told"), [(True, 1e-3, True), (False, 1e-3, False), (False, 9.1, True), (False, None, True)]
+)
+def test_a_force_that_begins_as_no_branch_says_is_the_polynomial_of_its_rows(
+    flat: bool, within: float | None, told: bool
+) -> None:
+    """Under a flat end, whose area presses at once, and where no branch relaxes within the first three steps."""
+    x = np.linspace(0.0, 1.0, 41)
+    times = () if within is None else (within * x[1] ** 2,)
+    strike = Strike(lambda r: r**2, 1.0, 1.0, 0.0, Relaxation(1.0, tuple(1e4 for _ in times), times), 10.0)
+    widths = np.array([2.0, 2.0 if flat else 3.0])
+    mean = 0.3 + x - 2.0 * x**4
+    curve = Curve(strike, 1.0, True, x, mean, x**2, np.array([0.0, 1.0]), widths, 0.0, {})
+    asked = np.array([0.004, 0.01, 0.3, 0.77, 1.0])
+    found, force, depth = curve.resolved(asked)
+    off = np.abs(found - (0.3 + asked - 2.0 * asked**4)).max()
+    assert (off < 1e-12) == told
+    assert (np.abs(force - (0.3 + 1.5 * asked - 6.0 * asked**4)).max() < 1e-10) == told
+    assert depth == pytest.approx(asked**2)
+
+
 def test_a_force_that_jitters_from_step_to_step_is_read_through_fewer() -> None:
     """Every other step leaves out what is off by turns: the force is right again, to what rows so far apart tell."""
     calm, true = calmest(bump(256, 1e-6)), bump(256, 0.0)
@@ -264,7 +285,7 @@ def test_a_contact_that_swings_on_its_weight_is_looked_into_at_every_step_howeve
     np.testing.assert_allclose(looked, np.linspace(0.0, 1.0, looked.size), atol=1e-12)
 
 
-@pytest.mark.parametrize("place", [0.07, 0.31, 0.5, 0.64, 0.93])
+@pytest.mark.parametrize("place", [0.01, 0.07, 0.31, 0.5, 0.64, 0.93, 0.99])
 def test_the_peak_of_a_quartic_is_found_by_interpolation_and_by_fit(place: float) -> None:
     def quartic(x: np.ndarray) -> np.ndarray:
         return np.asarray(2.0 - (x - place) ** 2 * (1.0 + 0.3 * (x - place) + (x - place) ** 2))
