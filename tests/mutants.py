@@ -290,6 +290,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/steppers/steps.py", "March.memory_time", ""): "a default that marches with a memory do not use",
     ("fe_contact/budget/variation.py", "Softening.errors", "0.0 -> 0.1"): "of quantities that there are not",
     ("fe_contact/waves/certify.py", "DEGREE, REACH", ""): "another smoothing, about as wide",
+    ("fe_contact/waves/impact.py", "LOCATED", ""): "a touch but for rounding",
     ("fe_contact/waves/impact.py", "READ, STRAIGHT", "5 -> 4"): "ends are read to 0.019 of a step instead of 0.018",
     ("fe_contact/waves/impact.py", "READ, STRAIGHT", "3 -> 4"): "the same end, its bar 1.7 times as wide in the median",
     ("lumped/solvers/hereditary/march.py", "_landed", ""): "a break of the plan, or the same place but for rounding",
