@@ -388,6 +388,46 @@ def test_rows_of_a_curve_with_waves_follow_the_tolerance(numerics: WaveNumerics)
     assert len(certify._rows(40_000, many, 1.0)) - 1 == pytest.approx(2 * (rows - 1), abs=1)
 
 
+@pytest.mark.parametrize("coarse", [False, True])
+def test_every_setting_of_waves_is_told_by_the_cheapest_runs_that_know_it(
+    monkeypatch: pytest.MonkeyPatch, numerics: WaveNumerics, coarse: bool
+) -> None:
+    """Steps by half of them, all else with few; the far field on the coarser mesh. A coarse mesh, a soft penalty and a
+    near far field are told by finer ones.
+    """
+    elements, penalty, far = (2.0, 150.0, 4.0) if coarse else (12.0, 600.0, 20.0)
+    given = numerics.varied(order=3, elements_per_contact=elements, penalty=penalty, far_radius=far)
+    contact, asked = SimpleNamespace(march="march", strike="strike"), list[tuple[int, WaveNumerics]]()
+    monkeypatch.setattr(certify, "curve_of", lambda *of: of)
+    monkeypatch.setattr(certify, "reading", lambda *of: of)
+    runs: Any = SimpleNamespace(
+        cheap=72,
+        follow=lambda one: SimpleNamespace(contacts=[None, contact]),
+        curve=lambda number, one: asked.append((number, one)) or one,
+    )
+    value, changes = certify._judged(runs, 1, given)
+    assert value == ("march", "strike", given)
+    assert {number for number, _ in asked} == {1}
+    cheap = given.varied(steps=72)
+    mesh = cheap.varied(elements_per_contact=24.0 / 3.0 if coarse else 6.0)
+    on = cheap if coarse else mesh
+    expected = {
+        "mesh": (cheap, mesh, 1.25 * (2.0 if coarse else 1.0)),
+        "penalty": (cheap, cheap.varied(penalty=300.0), 1.25 * (2.0 if coarse else 1.0)),
+        "time_step": (given, given.varied(steps=given.steps // 2), 1.25),
+        "far_field": (on, on.varied(far_radius=8.0 if coarse else 10.0), 1.25 / 3.0 * (4.0 if coarse else 1.0)),
+    }
+    assert set(changes) == set(expected) == set(CAUSES)
+    for cause, (first, second, trusted) in expected.items():
+        change = changes[cause][0]
+        assert isinstance(change, certify.Moved)
+        assert (change.first, change.second) == (first, second), cause
+        assert change.factor == pytest.approx(trusted), cause
+        assert isinstance(change, certify.EndMoved) == (cause == "time_step")
+    assert changes["mesh"][1:] == (("march", "strike", given),), "and what the rows leave"
+    assert [len(one) for one in changes.values()] == [2, 1, 1, 1]
+
+
 def test_what_rows_of_a_curve_with_waves_leave_is_told_by_half_of_them(numerics: WaveNumerics) -> None:
     """A force t (1 - t) whose mean jitters from step to step, of which a local cubic leaves little in any row.
 
