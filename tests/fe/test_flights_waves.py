@@ -273,9 +273,7 @@ def test_a_flight_takes_as_many_steps_of_each_length_as_it_waits_and_then_halves
     left, halving = flight - time, [length]
     while length > 1.0:
         length *= 0.5
-        halving += (
-            [length] * (1 + math.floor(left / length)) if length == 1.0 else [length] * (2 if left > length else 1)
-        )
+        halving += [length] * (1 + int(left // length))  # the last of them would meet the surface
         left %= length
     assert flights.lengths == growing + halving
     assert flights.landing(still, 0.0) is None
