@@ -238,3 +238,47 @@ def test_an_end_time_cuts_a_contact_off_in_its_last_step(spring: Build) -> None:
     assert march.depth[-1] == pytest.approx(VELOCITY / PACE * np.sin(0.3 * np.pi), rel=1e-4)
     assert march.energy["stored"] == pytest.approx(0.5 * STIFFNESS * march.depth[-1] ** 2)
     assert march.energy["residual"] == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES.names)
+@pytest.mark.parametrize("end", [0.3, 0.6])
+def test_weight_and_what_is_held_at_touch_are_in_the_account(spring: Build, scheme: str, end: float) -> None:
+    """A mass put on a spring that is pressed already: what it brings is its speed, its way under gravity and that."""
+    gravity, before = 5.0, 0.2
+    march = marched(spring(gravity=gravity, depth=before, end=end * CONTACT, scheme=scheme))
+    assert not march.separated
+    assert march.depth[0] == before
+    energy, depth = march.energy, float(march.depth[-1])
+    way, held = MASS * gravity * (depth - before), 0.5 * STIFFNESS * before**2
+    assert energy["in"] == pytest.approx(0.5 * MASS * VELOCITY**2 + way + held)
+    assert energy["stored"] == pytest.approx(0.5 * STIFFNESS * depth**2)
+    speed = VELOCITY + gravity * march.time[-1] - march.impulse[-1] / MASS
+    assert energy["out"] == pytest.approx(0.5 * MASS * speed**2)
+    assert energy["residual"] == pytest.approx(0.0, abs=1e-12)
+    rest = MASS * gravity / STIFFNESS
+    swung = rest + (before - rest) * np.cos(end * np.pi) + VELOCITY / PACE * np.sin(end * np.pi)
+    assert depth == pytest.approx(swung, rel=1e-3 if SCHEMES.get(scheme).order == 2 else 0.05)
+
+
+@pytest.mark.parametrize("later", [False, True])
+def test_a_trend_tells_the_end_only_of_a_mass_that_leaves_after_four_steps(spring: Build, later: bool) -> None:
+    """By the last three places where the scheme reads what presses, which fall along a parabola; and by no kink."""
+    stepper = spring()
+    marcher = _Marcher(stepper, lambda done: None)
+    ends, pressing = 7.0, 1.0 if later else 1e-4
+
+    def step(time: float, velocity: float = -1.0) -> Any:
+        read = time - 0.5 * 0.1
+        state: Any = State(time, 0.0, velocity, 0.0, None)
+        response = (ends - read) * (1.0 + 0.02 * (ends - read))
+        made_up: Any = (0.1, state, pressing, 0.0, 0.0, response, None, 1.0, Work())
+        return Step(*made_up)
+
+    first: Any = step(1.0)._replace(force=1.0)
+    steps = [first, *(step(time) for time in (6.2, 6.3, 6.4))]
+    assert marcher._time_left(steps) == pytest.approx(0.6)
+    assert marcher._time_left(steps[1:]) is None
+    assert marcher._time_left([*steps[:3], step(6.4, velocity=0.1)]) is None
+    marcher.shortest = 0.7
+    found = marcher._time_left(steps)
+    assert found is None if later else found == pytest.approx(0.6), "a kink: contact ends faintly"
