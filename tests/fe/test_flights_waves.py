@@ -17,7 +17,7 @@ from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.dynamics.body import BodyWithMass, Part, Pressing, state_of, undeformed
 from fe_contact.dynamics.march import MOST_WORK, Energies, Moment, Motion, Sample, Steppers, account_at_start
 from fe_contact.dynamics.stepping import Enforced, ImplicitStepper
-from fe_contact.errors import TooManySteps
+from fe_contact.errors import MemoryTooSmall, TooManySteps
 from fe_contact.march.impacts import Grounded
 from fe_contact.settings import WaveNumerics
 from fe_contact.steppers.steps import Strike
@@ -387,6 +387,16 @@ def test_a_striker_that_still_presses_at_the_end_is_told_up_to_there() -> None:
     assert march.impulse == pytest.approx(mass * (velocity - speed) + mass * gravity * march.time)
     assert march.radius_time == pytest.approx(march.time[1:]), "at touch nothing presses yet"
     assert march.work == (11, 11, 12)
+
+
+def test_a_contact_is_as_wide_as_pressures_change_their_sign_and_none_may_leave_the_fine_mesh() -> None:
+    found, _ = bounced(2.0, 0.7, 0.0, 0.1)
+    places = np.array([0.1, 0.2, 0.3, 0.4])
+    moving: Any = SimpleNamespace(places=places)
+    sample = found.samples[5]._replace(signed_pressure=(0.26 - places) * 3.0)
+    assert impact._radius(moving, sample) == pytest.approx(0.26, abs=0.02)
+    with pytest.raises(MemoryTooSmall, match=r"0\.4"):
+        impact._radius(moving, sample._replace(signed_pressure=(0.46 - places) * 3.0))
 
 
 @dataclass(frozen=True)
