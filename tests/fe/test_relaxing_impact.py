@@ -19,6 +19,7 @@ from fe_contact.budget.curve import Curve, extrapolated
 from fe_contact.budget.solved import ImpactModel
 from fe_contact.errors import ContactLost
 from fe_contact.large_strains import ELASTIC
+from fe_contact.march.impact import step_length
 from fe_contact.plastic.impact import YIELDING
 from fe_contact.relaxing_impact import RELAXING, Instant, Marcher, plan
 from fe_contact.settings import Numerics, WaveNumerics
@@ -308,7 +309,7 @@ def test_steps_on_a_spring_err_as_their_square_whatever_time_was_expected(
         march = on_spring(strike, numerics, unit, scale, late * depth / unit).march()
         found = Curve.of(march, strike).quantities
         assert march.radius == pytest.approx(np.where(march.depth[1:-1] > late * depth, unit, 0.0))
-        assert march.work.iterations == march.work.steps
+        assert march.work == (len(march.radius), len(march.radius), len(march.radius))
         times.append(march.time)
         errors.append([found[name] / value - 1.0 for name, value in true.items()])
         assert abs(march.energy["residual"]) < 1e-3 * energy
@@ -318,6 +319,27 @@ def test_steps_on_a_spring_err_as_their_square_whatever_time_was_expected(
     few, many = np.abs(errors)
     assert few.max() < 1e-3
     assert np.all(many < np.maximum(0.3 * few, 1e-7))
+
+
+@pytest.mark.parametrize("gravity", [0.0, 3.0])
+def test_a_striker_that_leaves_within_a_step_is_slowed_by_half_of_the_force_that_pressed_before(
+    gravity: float, settings_of: Callable[..., Numerics]
+) -> None:
+    """Nothing presses at the step's end: the mean of both, in units of length and force of their own."""
+    unit, scale, mass = 0.02, 3.0, 0.4
+    strike = Strike(lambda r: r**2, mass, 0.7, gravity, Relaxation(1.0), 10.0)
+    numerics = settings_of(strike, steps=60).varied(contact_time=0.1, peak_share=0.5)
+    marcher = on_spring(strike, numerics, unit, scale)
+    here = replace(marcher._touch(), time=0.09, depth=1e-4, velocity=-0.6 / unit, impulse=5.0, force=0.2)
+    there = marcher._next([here] * 30, None)
+    length = 0.1 * step_length(29, 60, 0.5)
+    assert there.time == pytest.approx(0.09 + length)
+    assert unit * there.depth == pytest.approx(
+        unit * 1e-4 - 0.6 * length + 0.5 * length**2 * (gravity - scale * 0.2 / mass)
+    )
+    assert there.depth < 0.0
+    assert unit * there.velocity == pytest.approx(-0.6 + length * (gravity - 0.5 * scale * 0.2 / mass))
+    assert (there.force, there.impulse) == (0.0, 5.0)
 
 
 REFUSED = {
