@@ -109,6 +109,23 @@ def test_a_volume_that_stands_apart_does_not_relax(name: str) -> None:
     assert abs(lasting.stress[3]) < 0.5 * abs(law.sudden.respond(stretch, ()).stress[3])
 
 
+@pytest.mark.parametrize("lame", [0.5, 2.0, 40.0])
+def test_where_all_relaxes_alike_what_lasts_is_a_share_of_all_and_what_fades_has_the_ratio_of_the_body(
+    lame: float,
+) -> None:
+    """Poisson's ratio lame/(2 (lame + shear)); of what keeps its volume a half."""
+    law = FadingLaw(Hyperelastic(YEOH, 1.0, lame), NETWORK, False)
+    fading, share = Fading.over(NETWORK, 1e7), NETWORK.relaxed / NETWORK.glassy
+    for way in (STRETCH, SHEAR, SWELLING):
+        at_once, lasting = (one.respond(way[:, None], ()) for one in (law.sudden, law.lasting))
+        assert lasting.stress == pytest.approx(share * at_once.stress, rel=1e-12)
+        assert lasting.energy == pytest.approx(share * at_once.energy, rel=1e-12)
+        long_after = law.over(fading).respond(way[:, None], fading.at_rest(4, 1))
+        assert long_after.stress == pytest.approx(lasting.stress, rel=1e-5, abs=1e-6 * np.abs(lasting.stress).max())
+    assert law.branches_nu == pytest.approx(lame / (2.0 * (lame + 1.0)))
+    assert replace(law, steady=True).branches_nu == 0.5
+
+
 def test_what_bends_the_tangent_of_a_body_that_relaxes_drifts_with_its_gradient_as_it_says() -> None:
     """By central differences; without that Newton's steps would foresee nothing, and be many."""
     material = Relaxing(Hyperelastic(YEOH, 1.0, 2.0), Fading.over(NETWORK, 0.3))
