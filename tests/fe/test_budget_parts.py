@@ -37,8 +37,9 @@ from fe_contact.settings import WaveNumerics
 from fe_contact.steppers.steps import Strike, Work
 from fe_contact.waves import certify
 from fe_contact.waves.certify import Waves
-from fe_contact.waves.plan import DEFAULTS, FEWEST
+from fe_contact.waves.plan import DEFAULTS, FEWEST, Cost
 from fe_contact.waves.plan import ELEMENTS as ELEMENTS_OF_WAVES
+from lumped import Scene
 from lumped.errors import NotReached
 from lumped.materials import Relaxation
 from lumped.result.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS, Quantity
@@ -498,6 +499,25 @@ def test_a_run_that_fails_tells_nothing_of_any_contact_and_is_not_run_again(nume
     assert runs.tried == 1
     alike: Any = runs
     assert Runs.curve_at_corners(alike, 0, numerics) is None
+
+
+def test_all_steps_of_a_budget_with_waves_are_those_of_its_marches_in_units_of_the_finest() -> None:
+    """As many as progress is told of: in proportion to the steps, and more than those of the finest alone."""
+    one, twice = (Cost(70, steps, 1.0).all_steps for steps in (200, 400))
+    assert twice == 2.0 * one
+    assert 200 < one < 6 * 200, "six runs, of which four take half of the steps or less"
+
+
+@pytest.mark.parametrize(("name", "behind"), [("polymer-layer", True), ("polymer-sphere-waves", False)])
+def test_the_march_behind_an_answer_is_handed_out_where_statics_are_all(
+    monkeypatch: pytest.MonkeyPatch, name: str, behind: bool
+) -> None:
+    march: Any = object()
+    monkeypatch.setattr(reference, "solve", lambda *of: march)
+    monkeypatch.setattr(reference, "result_of", lambda scene, found: ("of", found))
+    monkeypatch.setattr(reference, "fe", lambda *of: "by its model")
+    expected = (("of", march), march) if behind else ("by its model", None)
+    assert reference.answered(Scene.load(name), {}) == expected
 
 
 def test_a_touch_is_as_uncertain_as_contact_and_flight_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
