@@ -133,7 +133,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/relaxing_impact.py", "ELEMENTS", ""): BEGINS,
     ("fe_contact/budget/certify.py", "certify", "4 -> "): BEGINS,
     # a guess that Newton's method, a secant or a check of every step corrects
-    ("fe_contact/contact/problem.py", "_answered", "springs * lifted -> springs"): GUESS,
+    ("fe_contact/contact/problem.py", "_answered", "springs * lifted ->"): GUESS,
     ("fe_contact/contact/problem.py", "_Point.towards", ""): GUESS,
     ("fe_contact/contact/enforcement/exact.py", "enforce", "0.5"): GUESS,
     ("fe_contact/steppers/scaled_surface.py", "Stepper._overlap_radius", ""): GUESS,
