@@ -248,7 +248,7 @@ def _time_steps(curve: Callable[[Numerics], Curve | None], numerics: Numerics, f
         double = curve(numerics.varied(steps=2 * numerics.steps))
         fourfold = curve(numerics.varied(steps=4 * numerics.steps))
         if double is None or fourfold is None or not _end_alike(fourfold, double):
-            return _TimeSteps(fine, (None,), (), 4 * numerics.steps)
+            return _TimeSteps(fine, (None,), (), numerics.steps)
         best, before = extrapolated(fourfold, double, order), extrapolated(double, fine, order)
         jitter = Variation(best, before, SAFETY)
         return _TimeSteps(fine, (Variation(fine, best, SAFETY),), (jitter,), 4 * numerics.steps, True)

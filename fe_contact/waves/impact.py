@@ -90,9 +90,8 @@ def record(moving: Moving, found: Motion, scene: Scene) -> March:
     time = np.append([s.time for s in pressed], end) if separated else np.array([s.time for s in pressed])
     depth, speed = np.array([(float(s.displacement[0]), float(s.velocity[0])) for s in found.samples]).T
     momentum = scene.reduced_mass * (scene.velocity - speed + scene.gravity * found.time)
-    if separated:  # nothing presses any more between the end and the last sample
-        late = found.samples[-1].time - end
-        depth[-1] -= late * (speed[-1] - 0.5 * scene.gravity * late)
+    late = found.samples[-1].time - end  # in which nothing presses any more
+    depth[-1] -= late * (speed[-1] - 0.5 * scene.gravity * late)
     touched = [s for s in pressed if s.force > 0.0]
     return March(
         time=time,
@@ -251,8 +250,7 @@ class Flights:
                 if taken >= self._patience and level < highest:
                     level, taken = level + 1, 0
             elif level:
-                level, taken = level - 1, 0
-                highest = level
+                highest = level = level - 1
             else:
                 return self._touched(moment)
         return None

@@ -24,21 +24,24 @@ from fe_contact.budget.certify import (
     _judging,
     other_mesh,
 )
-from fe_contact.budget.plan import Plan
+from fe_contact.budget.plan import ELEMENTS, Plan
 from fe_contact.budget.refine import AIM, FACTOR, Growth, factors, missing
 from fe_contact.budget.runs import AnyRuns, Runs
 from fe_contact.budget.several import Row
 from fe_contact.budget.solved import SolvedBy
-from fe_contact.budget.variation import UNORDERED, factor
+from fe_contact.budget.variation import SAFETY, UNORDERED, factor
 from fe_contact.march.impacts import Followed
 from fe_contact.plastic import course
 from fe_contact.plastic.indent import YieldingWay
 from fe_contact.settings import WaveNumerics
-from fe_contact.steppers.steps import Work
+from fe_contact.steppers.steps import Strike, Work
 from fe_contact.waves import certify
 from fe_contact.waves.certify import Waves
-from fe_contact.waves.plan import DEFAULTS
+from fe_contact.waves.plan import DEFAULTS, FEWEST, Cost
+from fe_contact.waves.plan import ELEMENTS as ELEMENTS_OF_WAVES
+from lumped import Scene
 from lumped.errors import NotReached
+from lumped.materials import Relaxation
 from lumped.result.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS, Quantity
 
 SETTINGS: dict[str, Any] = {"tolerance": 3e-3, "steps": 200, "contact_radius": 1e-3, "contact_time": 1e-3}
@@ -225,6 +228,8 @@ def test_another_mesh_tells_of_the_error_of_one_that_converges(
         assert mesh.order == 2 * order
         assert mesh.elements_per_contact >= elements
         assert nodes_of >= (4.0 * mesh.order if nodes is None else nodes)
+        enough = ELEMENTS if nodes is None else nodes / mesh.order
+        assert mesh.elements_per_contact <= max(elements, enough), "no finer than what is usual: it costs as much"
         assert trusted > 2.0, "no order shows: the finer one errs by less than the coarser"
         return
     power = {3: 1, 4: 2}[order]
@@ -234,6 +239,15 @@ def test_another_mesh_tells_of_the_error_of_one_that_converges(
     assert ratio >= 2.0 if finer else ratio == 0.5
     error, other = elements**-power, mesh.elements_per_contact**-power
     assert error <= trusted * abs(error - other) <= 1.2500001 * (error if ratio <= 2.0 else 2.0 * error)
+
+
+def test_the_usual_mesh_of_waves_is_halved_and_the_coarsest_doubled(numerics: WaveNumerics) -> None:
+    """Half as fine a one costs a quarter, but what half of few nodes change may vanish by chance."""
+    for elements, finer in ((ELEMENTS_OF_WAVES, False), (FEWEST["elements"], True)):
+        given = numerics.varied(order=DEFAULTS["order"], elements_per_contact=elements)
+        mesh, _ = certify.tells_of_mesh(given)
+        assert (mesh.elements_per_contact > elements) == finer
+        assert mesh.order == given.order
 
 
 def test_shares_of_the_tolerance_are_relative_or_absolute_and_of_what_is_known() -> None:
@@ -331,6 +345,26 @@ def test_the_tolerance_that_is_met_is_said_where_it_is_known(error: float, met: 
     assert not met or f"a tolerance of {met} is met" in said
 
 
+@pytest.mark.parametrize("worst", [0, 1])
+def test_of_several_contacts_the_tolerance_is_met_that_all_of_them_meet(worst: int) -> None:
+    """Each that misses is named by its number, and no other."""
+    parts = [
+        {name: Quantity(1.0, {"duration": error}.get(name, 1e-4), "") for name in UNITS}
+        for error in (*np.roll([3.9e-2, 1.1e-2], worst).tolist(), 5e-4)
+    ]
+    found: Any = SimpleNamespace(numerics=SimpleNamespace(tolerance=1e-3), parts=tuple(parts))
+    scene: Any = SimpleNamespace(motion=SimpleNamespace(impacts=3))
+    said = "; ".join(solved._missed(scene, SimpleNamespace(refused="so dear"), found))
+    assert "a tolerance of 0.04 is met" in said
+    assert "so dear" in said
+    errors = ["0.039", "0.011"]
+    for number in (1, 2):
+        assert f"contact {number}: tolerance 0.001 not reached: duration to {errors[number - 1 - worst]}" in said
+    assert "contact 3" not in said
+    found.parts = (parts[2], parts[2])
+    assert solved._missed(scene, SimpleNamespace(refused="so dear"), found) == []
+
+
 @pytest.mark.parametrize("few", [True, False])
 def test_a_mesh_is_varied_with_no_fewer_steps_where_few_would_hide_what_it_changes(
     few: bool, numerics: WaveNumerics
@@ -353,6 +387,71 @@ def test_rows_of_a_curve_with_waves_follow_the_tolerance(numerics: WaveNumerics)
     assert more - 1 == pytest.approx(2 * (rows - 1), abs=1)
     assert of_half == rows
     assert len(certify._rows(40_000, many, 1.0)) - 1 == pytest.approx(2 * (rows - 1), abs=1)
+
+
+@pytest.mark.parametrize("coarse", [False, True])
+def test_every_setting_of_waves_is_told_by_the_cheapest_runs_that_know_it(
+    monkeypatch: pytest.MonkeyPatch, numerics: WaveNumerics, coarse: bool
+) -> None:
+    """Steps by half of them, all else with few; the far field on the coarser mesh. A coarse mesh, a soft penalty and a
+    near far field are told by finer ones.
+    """
+    elements, penalty, far = (2.0, 150.0, 4.0) if coarse else (12.0, 600.0, 20.0)
+    given = numerics.varied(order=3, elements_per_contact=elements, penalty=penalty, far_radius=far)
+    contact, asked = SimpleNamespace(march="march", strike="strike"), list[tuple[int, WaveNumerics]]()
+    monkeypatch.setattr(certify, "curve_of", lambda *of: of)
+    monkeypatch.setattr(certify, "reading", lambda *of: of)
+    runs: Any = SimpleNamespace(
+        cheap=72,
+        follow=lambda one: SimpleNamespace(contacts=[None, contact]),
+        curve=lambda number, one: asked.append((number, one)) or one,
+    )
+    value, changes = certify._judged(runs, 1, given)
+    assert value == ("march", "strike", given)
+    assert {number for number, _ in asked} == {1}
+    cheap = given.varied(steps=72)
+    mesh = cheap.varied(elements_per_contact=24.0 / 3.0 if coarse else 6.0)
+    on = cheap if coarse else mesh
+    expected = {
+        "mesh": (cheap, mesh, 1.25 * (2.0 if coarse else 1.0)),
+        "penalty": (cheap, cheap.varied(penalty=300.0), 1.25 * (2.0 if coarse else 1.0)),
+        "time_step": (given, given.varied(steps=given.steps // 2), 1.25),
+        "far_field": (on, on.varied(far_radius=8.0 if coarse else 10.0), 1.25 / 3.0 * (4.0 if coarse else 1.0)),
+    }
+    assert set(changes) == set(expected) == set(CAUSES)
+    for cause, (first, second, trusted) in expected.items():
+        change = changes[cause][0]
+        assert isinstance(change, certify.Moved)
+        assert (change.first, change.second) == (first, second), cause
+        assert change.factor == pytest.approx(trusted), cause
+        assert isinstance(change, certify.EndMoved) == (cause == "time_step")
+    assert changes["mesh"][1:] == (("march", "strike", given),), "and what the rows leave"
+    assert [len(one) for one in changes.values()] == [2, 1, 1, 1]
+
+
+def test_what_rows_of_a_curve_with_waves_leave_is_told_by_half_of_them(numerics: WaveNumerics) -> None:
+    """A force t (1 - t) whose mean jitters from step to step, of which a local cubic leaves little in any row.
+
+    Order two is trusted of the rows: a third of the change, and the quarter more that is safe.
+    """
+    time = np.linspace(0.0, 1.0, 801)
+    jitter = 1e-3 * np.where(time > 0.0, (-1.0) ** np.arange(801), 0.0)
+    march: Any = SimpleNamespace(
+        time=time, depth=time, impulse=time**2 * (0.5 - time / 3.0) + time * jitter, first_force=0.0,
+        radius_time=time[1:], radius=time[1:], separated=True, end_spread=0.0, energy={},
+    )  # fmt: skip
+    strike = Strike(lambda r: r**2, 1.0, 0.1, 0.0, Relaxation(1.0), 10.0)
+    given = numerics.varied(steps=800, tolerance=3e-3)
+    whole, found = certify.curve_of(march, strike, given), certify.reading(march, strike, given)
+    rows = whole.x**2
+    mean = rows * (0.5 - rows / 3.0)
+    assert np.abs(whole.mean_force - mean)[1:-1].max() < 0.5e-3, "half of it at the ends, and less between"
+    assert whole.depth == pytest.approx(rows)
+    assert np.array_equal(found.first.x, whole.x)
+    assert np.array_equal(found.first.mean_force, whole.mean_force)
+    assert len(found.second.x) - 1 == pytest.approx(0.5 * (len(whole.x) - 1), abs=1)
+    assert found.second.x[[0, -1]].tolist() == [0.0, 1.0]
+    assert found.factor == pytest.approx(SAFETY / (2**2 - 1))
 
 
 def test_the_deepest_of_several_contacts_is_what_may_be_too_deep(
@@ -400,6 +499,25 @@ def test_a_run_that_fails_tells_nothing_of_any_contact_and_is_not_run_again(nume
     assert runs.tried == 1
     alike: Any = runs
     assert Runs.curve_at_corners(alike, 0, numerics) is None
+
+
+def test_all_steps_of_a_budget_with_waves_are_those_of_its_marches_in_units_of_the_finest() -> None:
+    """As many as progress is told of: in proportion to the steps, and more than those of the finest alone."""
+    one, twice = (Cost(70, steps, 1.0).all_steps for steps in (200, 400))
+    assert twice == 2.0 * one
+    assert 200 < one < 6 * 200, "six runs, of which four take half of the steps or less"
+
+
+@pytest.mark.parametrize(("name", "behind"), [("polymer-layer", True), ("polymer-sphere-waves", False)])
+def test_the_march_behind_an_answer_is_handed_out_where_statics_are_all(
+    monkeypatch: pytest.MonkeyPatch, name: str, behind: bool
+) -> None:
+    march: Any = object()
+    monkeypatch.setattr(reference, "solve", lambda *of: march)
+    monkeypatch.setattr(reference, "result_of", lambda scene, found: ("of", found))
+    monkeypatch.setattr(reference, "fe", lambda *of: "by its model")
+    expected = (("of", march), march) if behind else ("by its model", None)
+    assert reference.answered(Scene.load(name), {}) == expected
 
 
 def test_a_touch_is_as_uncertain_as_contact_and_flight_before_it(monkeypatch: pytest.MonkeyPatch) -> None:

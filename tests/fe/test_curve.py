@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from scipy.integrate import cumulative_simpson
 
 from fe_contact.budget.curve import PEAK_SHARE, PLACES, Curve, LocalPolynomials, fitted_peak, peak, seen_from_both_sides
 from fe_contact.budget.variation import LATE, Variation, _at_corners, _crossings, calmest, calmest_at_corners
@@ -43,10 +46,86 @@ def bump(steps: int, jitter: float) -> Curve:
     return Curve(strike, 1.0, True, x, mean, time, np.array([0.0, 1.0]), np.ones(2), 0.0, {})
 
 
-@pytest.mark.parametrize("within", [1e-4, 1e-2, 0.3])
+def force_of(time: np.ndarray, power: float) -> np.ndarray:
+    return np.asarray((4.0 * time * (1.0 - time**2)) ** power)
+
+
+def marched(steps: int, end: float, size: float, cut: float) -> tuple[Curve, np.ndarray]:
+    """A force size t (end - t) up to a share ``cut`` of its end, of 3 kg at 2 m/s under 5 m/s2, and its rows' times."""
+    time = cut * end * np.linspace(0.0, 1.0, steps + 1) ** 2
+    impulse, squared = size * time**2 * (end / 2.0 - time / 3.0), 7.0 * time * (end - time)
+    march: Any = SimpleNamespace(
+        time=time, depth=4.0 * time - 3.0 * time**2, impulse=impulse, first_force=0.0, radius_time=time[1:],
+        radius=np.sqrt(squared[1:]), separated=cut == 1.0, end_spread=0.03 * end, energy={"in": 2.0},
+    )  # fmt: skip
+    return Curve.of(march, Strike(lambda r: r**2, 3.0, 2.0, 5.0, Relaxation(1.0), 10.0)), time
+
+
+@pytest.mark.parametrize("end", [1.0, 1e-3])
+@pytest.mark.parametrize("cut", [1.0, 0.7])
+def test_a_curve_tells_of_a_force_that_is_a_parabola_all_that_there_is(end: float, cut: float) -> None:
+    """Force, impulse, depth, speed and radius at any time, in closed form; nothing before the touch, and after the end
+    of what has parted. What is cut off presses on.
+    """
+    size = 30.0 / end**2
+    curve, time = marched(40, end, size, cut)
+    last = cut * end
+    asked = last * np.array([0.0, 1e-4, 0.3, 0.501, 0.77, 0.9999])
+    found = curve.read(asked)
+    np.testing.assert_allclose(found.force, size * asked * (end - asked), rtol=1e-9, atol=1e-9 * size * end**2)
+    np.testing.assert_allclose(found.impulse, size * asked**2 * (end / 2.0 - asked / 3.0), rtol=1e-9)
+    np.testing.assert_allclose(found.depth, 4.0 * asked - 3.0 * asked**2, rtol=1e-9, atol=1e-15)
+    velocity = 2.0 + 5.0 * asked - found.impulse / 3.0
+    np.testing.assert_allclose(curve.velocity(asked, found.impulse), velocity, rtol=1e-9)
+    np.testing.assert_allclose(curve.radius_at(time[1:-1]) ** 2, 7.0 * time[1:-1] * (end - time[1:-1]), rtol=1e-9)
+    held = size * last * (end - last)
+    outside = curve.force(np.array([-0.1 * last, last, 1.1 * last]))
+    assert outside == pytest.approx([0.0, *2 * [0.0 if cut == 1.0 else held]], abs=1e-9 * size * end**2)
+    assert curve.last_step == pytest.approx(time[-2])
+    assert (curve.duration, curve.end_spread, curve.separated) == (last, 0.03 * end, cut == 1.0)
+    impulse = size * last**2 * (end / 2.0 - last / 3.0)
+    left = impulse / 3.0 - 2.0 - 5.0 * last
+    assert curve.leaving_speed == pytest.approx(left)
+    parted = {"duration": last, "restitution": left / 2.0} if cut == 1.0 else {"duration": None, "restitution": None}
+    told = {"peak_force": size * end**2 / 4.0, "peak_time": end / 2.0, "impulse": impulse, **parted}
+    told["peak_depth"] = 4.0 / 3.0 if last > 2.0 / 3.0 else 4.0 * last - 3.0 * last**2
+    for name, value in curve.quantities.items():
+        assert value == (told[name] if told[name] is None else pytest.approx(told[name], rel=1e-6)), name
+
+
+@pytest.mark.parametrize("steps", [40, 41])
+def test_rows_left_out_by_turns_leave_both_ends_and_what_alternates_is_evened_away(steps: int) -> None:
+    """The rest is a polynomial of the fifth degree, which any of its rows tell."""
+    x = np.linspace(0.0, 1.0, steps + 1)
+    mean = 0.3 + x**2 - 2.0 * x**5
+    jitter = 0.01 * (-1.0) ** np.arange(steps + 1)
+    jitter[[0, -1]] = 0.0
+    curve = replace(bump(steps, 0.0), x=x, mean_force=mean + jitter)
+    thin = curve.thinned()
+    kept = sorted({*range(0, steps + 1, 2), steps})
+    assert np.array_equal(thin.x, x[kept])
+    assert np.array_equal(thin.mean_force, (mean + jitter)[kept])
+    assert np.array_equal(thin.depth, curve.depth[kept])
+    even = curve.evened()
+    assert np.array_equal(even.x, x[kept])
+    near_ends = 0.01 * (x[kept] < 8.0 / steps) + 0.01 * (x[kept] > 1.0 - 8.0 / steps)
+    assert np.all(np.abs(even.mean_force - mean[kept]) <= near_ends + 1e-12)
+    assert np.array_equal(even.mean_force[[0, -1]], mean[[0, -1]])
+    plain = replace(curve, mean_force=mean)
+    asked = np.array([0.0, 0.013, 0.4, 0.999])
+    read = plain.read_at(asked)
+    np.testing.assert_allclose(read.mean_force, 0.3 + asked**2 - 2.0 * asked**5, atol=1e-12)
+    np.testing.assert_allclose(read.depth, asked**2, atol=1e-12)
+    assert np.array_equal(read.x, asked)
+
+
+@pytest.mark.parametrize("within", [1e-4, 1e-2, 0.3, 8.9])
 @pytest.mark.parametrize("power", [1.0, 1.5, 2.0])
 def test_a_branch_that_relaxes_within_the_first_step_is_read_as_its_law_says(power: float, within: float) -> None:
-    """A striker that nothing slows, a branch ``within`` the first of forty steps, ten thousand times as stiff."""
+    """A striker that nothing slows, a branch ``within`` the first of forty steps, ten thousand times as stiff.
+
+    Or within the first three, which are nine times as long.
+    """
     x = np.linspace(0.0, 1.0, 41)
     relaxation = Relaxation(1.0, (1e4,), (within * x[1] ** 2,))
     strike = Strike(lambda r: r**2, 1.0, 1.0, 0.0, relaxation, 10.0, power=power)
@@ -73,6 +152,27 @@ def test_what_a_dashpot_pushes_back_at_touch_is_not_smoothed_over_the_first_step
     assert begun[0] == 0.0
     assert np.all(begun <= 1.2 * true[0])
     assert curve.first_step == pytest.approx(x[1] ** 2)
+
+
+@pytest.mark.parametrize(
+    ("flat", "within", "told"), [(True, 1e-3, True), (False, 1e-3, False), (False, 9.1, True), (False, None, True)]
+)
+def test_a_force_that_begins_as_no_branch_says_is_the_polynomial_of_its_rows(
+    flat: bool, within: float | None, told: bool
+) -> None:
+    """Under a flat end, whose area presses at once, and where no branch relaxes within the first three steps."""
+    x = np.linspace(0.0, 1.0, 41)
+    times = () if within is None else (within * x[1] ** 2,)
+    strike = Strike(lambda r: r**2, 1.0, 1.0, 0.0, Relaxation(1.0, tuple(1e4 for _ in times), times), 10.0)
+    widths = np.array([2.0, 2.0 if flat else 3.0])
+    mean = 0.3 + x - 2.0 * x**4
+    curve = Curve(strike, 1.0, True, x, mean, x**2, np.array([0.0, 1.0]), widths, 0.0, {})
+    asked = np.array([0.004, 0.01, 0.3, 0.77, 1.0])
+    found, force, depth = curve.resolved(asked)
+    off = np.abs(found - (0.3 + asked - 2.0 * asked**4)).max()
+    assert (off < 1e-12) == told
+    assert (np.abs(force - (0.3 + 1.5 * asked - 6.0 * asked**4)).max() < 1e-10) == told
+    assert depth == pytest.approx(asked**2)
 
 
 def test_a_force_that_jitters_from_step_to_step_is_read_through_fewer() -> None:
@@ -203,7 +303,7 @@ def test_a_contact_that_swings_on_its_weight_is_looked_into_at_every_step_howeve
     np.testing.assert_allclose(looked, np.linspace(0.0, 1.0, looked.size), atol=1e-12)
 
 
-@pytest.mark.parametrize("place", [0.07, 0.31, 0.5, 0.64, 0.93])
+@pytest.mark.parametrize("place", [0.01, 0.07, 0.31, 0.5, 0.64, 0.93, 0.99])
 def test_the_peak_of_a_quartic_is_found_by_interpolation_and_by_fit(place: float) -> None:
     def quartic(x: np.ndarray) -> np.ndarray:
         return np.asarray(2.0 - (x - place) ** 2 * (1.0 + 0.3 * (x - place) + (x - place) ** 2))
@@ -211,6 +311,28 @@ def test_the_peak_of_a_quartic_is_found_by_interpolation_and_by_fit(place: float
     times = np.linspace(0.0, 1.0, 21)
     for found in (peak(times, quartic(times)), fitted_peak(0.0, 1.0, quartic(np.linspace(0.0, 1.0, PLACES)))):
         assert found == pytest.approx((place, 2.0), abs=1e-9)
+
+
+@pytest.mark.parametrize("power", [1.1, 1.5, 3.0])
+def test_a_fit_of_a_peak_errs_by_what_a_fit_half_as_high_changes_and_a_third_more(power: float) -> None:
+    """A force [4 t (1 - t^2)]^power, no polynomial, by the best quartics through 17 of its values.
+
+    Half as high a part of a peak is 2^(1/2) times less wide: errors of the fourth order in that fall to a quarter.
+    """
+    x = np.linspace(0.0, 1.0, 321)
+    impulse = np.append(0.0, cumulative_simpson(2.0 * x * force_of(x**2, power), x=x))
+    mean = np.append(0.0, impulse[1:] / x[1:] ** 2)
+    curve = replace(bump(320, 0.0), x=x, mean_force=mean, radius_squared=np.array([1.0, 2.0]))
+    peaks = list[np.ndarray]()
+    for share in (0.98, 0.99):
+        high = curve.dense_time[curve.dense_force > share * curve.dense_force.max()]
+        times = np.linspace(high[0], high[-1], 17)
+        quartic = np.polynomial.Polynomial.fit(times, curve.force(times), 4)
+        (top,) = (root.real for root in quartic.deriv().roots() if high[0] < root.real < high[-1] and root.imag == 0.0)
+        peaks.append(np.array([top, quartic(top)]))
+    spread = np.abs(peaks[0] - peaks[1]) / (1.0 - 1.0 / 4.0)
+    told = curve.with_peak_spread().peak_spread
+    assert [told["peak_time"], told["peak_force"]] == pytest.approx(spread, rel=1e-4)
 
 
 def test_a_fitted_peak_hardly_follows_a_jitter() -> None:

@@ -306,6 +306,18 @@ def test_bars_hold_whatever_the_elements(target: dict[str, Any], campaign_size: 
             assert abs(known.value - finer[name]) <= known.error, (name, scene, given)
 
 
+@pytest.mark.parametrize("velocity", [1e-3, 1.0])
+def test_the_far_end_of_a_ball_is_its_other_pole_and_of_two_that_of_the_larger(velocity: float) -> None:
+    """The setting says how many contact radii away that is."""
+    planned = {
+        1.0: plane.plan(ball(velocity), {}).numerics,
+        2.5: sphere.plan(pair(velocity, radius=2.5 * RADIUS), {}).numerics,
+    }
+    planned[1.0 + 1e-9] = sphere.plan(pair(velocity, radius=0.4 * RADIUS), {}).numerics
+    for larger, numerics in planned.items():
+        assert numerics.far_radius * numerics.contact_radius == pytest.approx(2.0 * larger * RADIUS)
+
+
 @pytest.mark.tenth
 @pytest.mark.parametrize("key", ["elements_per_contact", "penalty", "far_radius"])
 def test_a_setting_at_the_end_of_its_range_is_varied_all_the_same(key: str) -> None:

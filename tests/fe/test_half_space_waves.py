@@ -148,6 +148,18 @@ def test_a_last_step_that_chatters_leaves_no_spike_of_force_before_the_end() -> 
         assert np.abs(curve.resolved(np.linspace(x[-3], 1.0, 400))[1]).max() < 0.2 * force.max()
 
 
+@pytest.mark.parametrize("soon", [0.003, 0.02, 0.3, 0.98])
+def test_an_end_that_would_follow_a_step_at_once_is_read_a_twentieth_of_it_later_and_no_better(soon: float) -> None:
+    """Of a force that falls along a line, in steps of a millisecond: else the next rows would lie on each other."""
+    time = 1e-3 * np.arange(12.0)
+    force = np.maximum(1e-3 * (10.0 + soon) - time, 0.0)
+    force[:4] = time[:4]
+    end, apart = parting(time, force, 1.0) or (0.0, 0.0)
+    later = max(0.05 - soon, 0.0)
+    assert end == pytest.approx(1e-3 * (10.0 + soon + later), rel=1e-9)
+    assert apart == pytest.approx(1e-3 * later, abs=1e-11)
+
+
 def test_too_few_steps_tell_no_end() -> None:
     time = np.arange(8.0)
     assert parting(time, np.array([0.0, 1.0, 2.0, 3.0, 2.0, 1.0, 0.5, 0.0]), 1.5) is None

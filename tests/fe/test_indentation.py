@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from fe_contact import indentation
+from fe_contact.bodies.pressing import PressedDepths
 from fe_contact.errors import BodyTooThin, ContactTooWide
 from fe_contact.indentation import CAUSES, FEWEST, Indenting, _accompanied, indent, press, settings
+from fe_contact.settings import Numerics
 from lumped import BadInput, Material, Relaxation
 from lumped.indentation import Indentation
 from lumped.scene.indenter import Indenter
@@ -188,6 +191,15 @@ def test_a_lone_depth_is_judged_like_one_of_many() -> None:
     assert lone.quantities == {}
 
 
+def test_where_depths_are_cheap_a_lone_one_is_pressed_beside_a_dozen_and_many_alone() -> None:
+    """Two contact problems each; the others are in the work, not in the answer."""
+    for depths, pressed in (((1e-4,), 1 + FEWEST), (tuple(np.linspace(1e-4, 2e-4, FEWEST).tolist()), FEWEST)):
+        found = Case(Sphere(1.0), HalfSpace(), 0.3, depths).found(tolerance=0.05)
+        assert found.work["contact_problems"] == 2 * pressed
+        assert found.depth.tolist() == list(depths)
+        assert found.force.size == found.contact_radius.size == found.force_error.size == len(depths)
+
+
 def test_twenty_depths_cost_two_contact_problems_each_and_few_iterations() -> None:
     depths = tuple(map(float, np.geomspace(1e-5, 4e-4, 20)))
     for target in (Layer(2e-3, "bonded"), HalfSpace()):
@@ -325,6 +337,51 @@ def test_what_a_force_misses_is_said_by_its_worst_depth_and_nothing_where_it_mis
     found = Indentation(SPREAD.indenter, "fe", 1e6, 1e-3, depth, force, np.sqrt(depth), force * np.array([1e-4, bar]))
     assert found.converged == (not said)
     assert found.message == said
+
+
+@pytest.mark.parametrize("finite", [False, True])
+@pytest.mark.parametrize("ends", [False, True])
+@pytest.mark.parametrize("coarse", [False, True])
+def test_an_entry_of_a_force_is_what_its_setting_changes_at_the_worst_depth_by_the_order_of_its_cause(
+    monkeypatch: pytest.MonkeyPatch, finite: bool, ends: bool, coarse: bool
+) -> None:
+    """Mesh of order 3/2, penalty of one, far field of two; a setting that is doubled errs by as much more than it.
+
+    The far field is varied on the other mesh, unless the body ends; what large strains have told of the penalty already
+    is not pressed again.
+    """
+    depth = np.array([4.0, 1.0, 2.0, 3.0])
+    given = {"elements_per_contact": 1.0, "penalty": 100.0, "far_radius": 4.0} if coarse else {"far_radius": 40.0}
+    numerics, pressed = settings(given, Sphere(1.0)), list[Numerics]()
+
+    def answer(depth: np.ndarray, one: Numerics) -> PressedDepths:
+        wrong = one.elements_per_contact**-1.5 + 7.0 / one.penalty + 0.1 / one.far_radius**2
+        force = depth**1.5 * (1.0 + 1e-3 * wrong * depth / 4.0)
+        return PressedDepths(force, depth**0.5, {}, 1.5, ends, newton=1e-9)
+
+    def press(elastic: Any, depth: np.ndarray, radii: np.ndarray, one: Numerics, **_: Any) -> PressedDepths:
+        assert np.array_equal(depth, radii)
+        pressed.append(one)
+        return answer(depth, one)
+
+    monkeypatch.setattr(indentation, "press", press)
+    way, times = indenting(depth.tolist(), finite), 2.0 if coarse else 0.5
+    soft = numerics.varied(penalty=times * numerics.penalty)
+    base = answer(depth, numerics)
+    if finite:
+        base = replace(base, softer=answer(depth, soft))
+    found = way._budget(base, numerics, lambda done: None)
+    parts = {"mesh": 1.0, "penalty": 7.0 / numerics.penalty, "far_field": 0.1 / numerics.far_radius**2}
+    if not coarse:
+        parts["mesh"] = numerics.elements_per_contact**-1.5
+    for cause, part in parts.items():
+        expected = 1.25e-3 * part * (0.0 if cause == "far_field" and ends else 1.0)
+        assert found[cause] == pytest.approx(expected, rel=0.02), cause
+    assert found["newton"] == 1e-9
+    other = numerics.varied(elements_per_contact=times * numerics.elements_per_contact)
+    asked = [] if finite else [soft]
+    far = [] if ends else [other.varied(far_radius=times * other.far_radius)]
+    assert pressed == [*asked, other, *far]
 
 
 def test_forces_are_pressed_finer_until_all_bars_together_meet_the_tolerance() -> None:

@@ -27,7 +27,7 @@ from fe_contact.solids.bulk import Bulk, Pattern
 from fe_contact.solids.contact import OnDeformed, OnRound, OnUndeformed
 from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.newton import BeyondRange, Encounter, Equilibrium, EquilibriumLost, _descended, balanced
-from fe_contact.solids.pressing import Solid, advanced, press
+from fe_contact.solids.pressing import Reached, Solid, advanced, press
 from fe_contact.solids.rolled import Rolled
 from lumped import BadInput, Scene, laws
 from lumped.indentation import Indentation
@@ -300,6 +300,56 @@ def test_a_bonded_block_is_that_of_small_strains_where_it_is_lightly_pressed() -
     below, middle, above = (advanced(body.encounter, None, share * 0.08, 500.0) for share in (0.9999, 1.0, 1.0001))
     slope = (above.balance.energy - below.balance.energy) / (above.balance.depth - below.balance.depth)
     assert slope == pytest.approx(middle.balance.force, rel=1e-6)
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-3])
+def test_under_a_tip_a_mesh_serves_depths_up_to_twice_its_shallowest_and_under_a_sphere_all(unit: float) -> None:
+    """In any order that they are asked in, and in any unit."""
+    depth = unit * np.array([3.2, 1.0, 1.5, 9.0, 2.1, 2.0, 4.1, 4.3])
+    assert pressing._together(Cone(18.0), depth) == [[1, 2, 5], [4, 0, 6], [7], [3]]
+    assert pressing._together(Sphere(1.0), depth) == [[1, 2, 5, 4, 0, 6, 7, 3]]
+
+
+@pytest.mark.parametrize("power", [0.3, 0.5, 1.0])
+def test_contacts_are_foreseen_as_wide_as_a_power_of_the_depth(power: float) -> None:
+    """That of the extreme depths, whatever lies between; of a lone one that of a sphere."""
+    depth = np.array([3e-4, 1e-4, 9e-4])
+    radii = 0.02 * depth**power * np.array([5.0, 1.0, 1.0])
+    assert pressing._widening(depth, radii) == pytest.approx(power)
+    assert pressing._widening(depth[:1], radii[:1]) == 0.5
+    along = np.linspace(-4.0, 4.0, 161)
+    touching = (along > -0.51) & (along < 1.01)  # as a pair of which one side is rounder
+    skin = SimpleNamespace(place=None)
+    encounter = SimpleNamespace(obstacle=SimpleNamespace(along=lambda place: along))
+    touch = SimpleNamespace(skin=skin, touching=touching)
+    before: Any = SimpleNamespace(balance=SimpleNamespace(depth=2.0, encounter=encounter, touch=touch))
+    for depth_then in (2.0, 4.0, 1.0):
+        wider = (depth_then / 2.0) ** power
+        found = along[pressing._touching(before, depth_then, power)]
+        assert found[0] + 0.5 * wider == pytest.approx(0.025, abs=0.0251)
+        assert wider - found[-1] == pytest.approx(0.025, abs=0.0251)
+    assert pressing._apart(4.0, before) == pytest.approx(np.log(2.0)) == pressing._apart(1.0, before)
+
+
+def test_what_was_found_at_depths_is_told_in_the_order_in_which_they_were_asked_for() -> None:
+    """The work of all of them, and the worst that another iteration would change."""
+    solid: Any = SimpleNamespace(unknowns=70, ends=True)
+    found = {2: Reached(3.0, 0.3, 1e-9, 5), 0: Reached(1.0, 0.1, 4e-9, 6), 1: Reached(2.0, 0.2, 2e-9, 7)}
+    told = pressing._told(solid, found)
+    assert told.force.tolist() == [1.0, 2.0, 3.0]
+    assert told.contact_radius.tolist() == [0.1, 0.2, 0.3]
+    assert told.work == {"degrees_of_freedom": 70, "contact_problems": 3, "iterations": 18}
+    assert (told.newton, told.ends, told.mesh_order) == (4e-9, True, 1.5)
+
+
+def test_strains_may_be_large_up_to_the_middle_between_the_contact_and_the_end_of_the_mesh() -> None:
+    """By the middles of the elements."""
+    corners = np.array([[0.0, 1.0, 2.0, 4.0, 6.0, 8.0, 10.0], [0.0, 0.1, 0.0, 0.1, 0.0, 0.1, 0.0]])
+    elements = np.array([[0, 1, 2, 3, 4], [1, 2, 3, 4, 5], [2, 3, 4, 5, 6]])
+    body: Any = SimpleNamespace(
+        basis=SimpleNamespace(mesh=SimpleNamespace(p=corners, t=elements)), surface=SimpleNamespace(zone=2.2)
+    )
+    assert pressing._core(body).tolist() == [0, 1, 2, 3], "their middles at 1, 7/3, 4 and 6, not that at 8"
 
 
 def test_under_a_steep_cone_every_depth_answers_alike() -> None:

@@ -14,16 +14,29 @@ from scipy.special import beta, betainc
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import CAUSES, Budget, Causes
-from fe_contact.budget.certify import ABOUT_A_STEP, Trust, _by_mesh, _judged, _rows, _time_steps, trust
-from fe_contact.budget.curve import Curve, extrapolated, squared_radius
+from fe_contact.budget.certify import (
+    ABOUT_A_STEP,
+    DAMPED_ANYWHERE,
+    NODEWISE_ANYWHERE,
+    Trust,
+    _by_mesh,
+    _judged,
+    _rows,
+    _time_steps,
+    trust,
+)
+from fe_contact.budget.curve import STENCIL, Curve, extrapolated, squared_radius
+from fe_contact.budget.plan import STEPS_AT_DEFAULT
 from fe_contact.budget.several import _error, _flight, _late
 from fe_contact.budget.variation import RIPPLED, SAFETY, STEEPER, Softening, Variation
+from fe_contact.relaxing_impact import _throughout
 from fe_contact.settings import Numerics, WaveNumerics
 from fe_contact.steppers.steps import Strike
 from fe_contact.waves import certify as certify_waves
 from fe_contact.waves.certify import Moved
 from fe_contact.waves.plan import DEFAULTS
 from lumped.materials import Relaxation
+from lumped.result.result import UNITS
 
 STEPS, CASES = 160, 40
 RULED = ("peak_force", "peak_depth", "impulse", "restitution")
@@ -546,6 +559,32 @@ def test_a_force_of_which_nothing_errs_is_known_but_for_its_last_step(duration: 
     held = float(curve.force(np.array([last]))[0])
     assert held > 0.0
     assert found.force_error(times) == pytest.approx([0.0, 0.0, 0.0, held, held])
+    pressed = replace(found, curve=replace(curve, separated=False))
+    assert np.array_equal(pressed.force_error(times), np.zeros(5)), "what is cut off falls to nothing nowhere"
+
+
+def test_the_bar_of_a_quantity_is_the_sum_of_what_all_settings_change_and_of_how_well_the_curve_is_read() -> None:
+    """How sharply its peak and its end can be read belongs to the steps; a run that failed makes it infinite."""
+    nothing: Any = None
+    errors = [{name: value * (1.0 + 0.1 * number) for number, name in enumerate(UNITS)} for value in (1.0, 20.0, 300.0)]
+    first, second, third = (SimpleNamespace(errors=one, force=partial(np.full_like, fill_value=one["impulse"]),
+                                            energies={"in": one["peak_time"]}) for one in errors)  # fmt: skip
+    changes: Any = {"mesh": (first, second), "penalty": (third,), "time_step": (second,), "far_field": ()}
+    curve = replace(TRUTH, end_spread=7e3, peak_spread={"peak_force": 5e4}, energy=TRUTH.energy | {"in": 1.0})
+    found = Budget(curve, nothing, changes, nothing, nothing)
+    for name in UNITS:
+        read = {"duration": 7e3, "peak_force": SAFETY * 5e4}.get(name, 0.0)
+        share = errors[0][name]
+        by_cause = {"mesh": 21.0 * share, "penalty": 300.0 * share, "time_step": read + 20.0 * share, "far_field": 0.0}
+        assert {cause: found.error(name, cause) for cause in CAUSES} == pytest.approx(by_cause)
+        assert found.quantities[name].error == pytest.approx(sum(by_cause.values()))
+    assert found.energy_error("in") == pytest.approx(341.0 * errors[0]["peak_time"])
+    times = np.array([0.1, 0.5])
+    assert found.force_error(times) == pytest.approx(2 * [341.0 * errors[0]["impulse"]])
+    failed = replace(found, changes=changes | {"far_field": (None,)})
+    assert {failed.error(name, "far_field") for name in UNITS} == {failed.energy_error("in")} == {np.inf}
+    largest = curve.dense_force.max()
+    assert failed.force_error(times) == pytest.approx(2 * [341.0 * errors[0]["impulse"] + largest])
 
 
 def in_units(curve: Curve, time: float, length: float, force: float) -> Curve:
@@ -632,6 +671,85 @@ def test_a_mesh_that_stays_is_trusted_less_than_one_that_follows_the_contact(fol
     off = np.abs(run(numerics).dense.impulse - TRUTH.dense.impulse).max()
     assert change.errors["impulse"] == pytest.approx(SAFETY * off, rel=1e-3)
     assert (change.unresolved is None) == follows, "no order shows in a force that jitters"
+
+
+@pytest.mark.parametrize("weights", [{}, NODEWISE_ANYWHERE, DAMPED_ANYWHERE])
+def test_a_mesh_that_stays_counts_longer_and_weighs_more_where_the_force_jitters(
+    weights: Mapping[str, float], settings: Numerics
+) -> None:
+    """A change of the impulse that is over when half of the contact is still to come, and one in its second half."""
+    numerics = settings.varied(order=4, elements_per_contact=4.0)
+
+    def changed(begin: float, end: float) -> Variation:
+        def run(one: Numerics) -> Curve:
+            wrong = 0.0 if one == numerics else 1e-3
+            return made_up(STEPS, lambda s: wrong * np.maximum((s - begin) * (end - s), 0.0) / (end - begin) ** 2)
+
+        _, change = _by_mesh(run, numerics, numerics, False, weights)
+        assert change is not None
+        return change
+
+    early, middle = changed(0.1, 0.4), changed(0.55, 0.7)
+    assert early.errors["impulse"] == pytest.approx(0.0, abs=1e-12)
+    assert middle.errors["impulse"] == pytest.approx(0.0, abs=1e-12) or weights
+    assert middle.errors["impulse"] > 1e-5 or not weights
+    assert middle.creeps == (weights is DAMPED_ANYWHERE)
+    for name in RULED:
+        plain = replace(middle, weights={})
+        assert middle.errors[name] == pytest.approx(weights.get(name, 1.0) * plain.errors[name])
+
+
+def dented(at: float, size: float = 1e-3) -> Curve:
+    """Path and mean force off in a hundredth of the contact about a share of it, and nowhere else."""
+    return made_up(STEPS, lambda s: size * np.maximum(1.0 - ((s - at) / 0.012) ** 2, 0.0) ** 2)
+
+
+def when(deep: float) -> float:
+    """The share of the contact, past the turn, after which the path is such a share of the largest depth."""
+    return 0.3 / 0.589 * (1.0 + float(np.sqrt(1.0 - deep)))
+
+
+@pytest.mark.parametrize("stays", [True, False])
+def test_what_a_setting_changes_counts_for_a_quantity_where_it_is_read_and_nowhere_else(
+    stays: bool, settings: Numerics
+) -> None:
+    """The largest depth where it is nearly reached, or on a mesh that stays above six tenths of it; speed, impulse and
+    end in the last quarter of the contact; the history everywhere.
+    """
+
+    def change(at: float) -> dict[str, float]:
+        _, found = _by_mesh(lambda one: TRUTH if one == settings else dented(at), settings, settings, not stays, {})
+        assert found is not None
+        return found.errors
+
+    deepest, near, beside, away = (change(when(deep)) for deep in (1.0, 0.9, 0.66, 0.54))
+    for one, counts in ((deepest, True), (near, stays), (beside, stays), (away, False)):
+        assert (one["peak_depth"] > 1e-5) == counts
+    for at in (0.70, 0.80):
+        found = change(at)
+        for name in ("impulse", "restitution", "duration"):
+            assert (found[name] > 1e-5) == (at > 0.75), (name, at)
+        assert found["history_l2"] > 1e-5
+
+
+@pytest.mark.parametrize("duration", [1.0, 1e-3])
+def test_a_viscous_force_has_no_order_within_two_steps_of_the_turn_of_its_path(duration: float) -> None:
+    """Of the run with longer steps, and only of the change that is told with its time without an order."""
+    viscous = replace(STRIKE, relaxation=Relaxation(1.0, viscosity=0.1))
+    fine, coarse = (replace(made_up(n, np.zeros_like), strike=viscous, duration=duration) for n in (80, 40))
+    rows = duration * (np.arange(41) / 40.0) ** 2
+    top = int(coarse.depth.argmax())
+    inside, outside = rows[[top - 2, top, top + 2]], rows[[top - 3, top + 3, 0, 40]]
+    beside = np.concatenate([0.999 * rows[[top - 2]], 1.001 * rows[[top + 2]], outside])
+    found = Variation(fine, coarse, 1.0, unresolved=0.0)
+    inside *= [1.0001, 1.0, 0.9999]
+    assert found._about_turn(inside).all()
+    assert not found._about_turn(beside).any()
+    assert not Variation(fine, coarse, 1.0)._about_turn(inside).any()
+    elastic = replace(coarse, strike=STRIKE)
+    assert not Variation(fine, elastic, 1.0, unresolved=0.0)._about_turn(inside).any()
+    for depth, turns in ((coarse.x, [1.0001 * rows[38], rows[40]]), (-coarse.x, [0.0, 0.9999 * rows[2]])):
+        assert Variation(fine, replace(coarse, depth=depth), 1.0, unresolved=0.0)._about_turn(np.array(turns)).all()
 
 
 @pytest.mark.parametrize("trusted", [0.5, 5.0])
@@ -750,6 +868,20 @@ def test_the_squared_radius_is_told_at_shares_of_any_contact(rows: int) -> None:
     np.testing.assert_allclose(squares, end**2 * shares * (1.0 - shares), atol=1e-3 * end**2)
 
 
+@pytest.mark.parametrize("end", [1e-3, 0.5])
+def test_a_contact_that_is_cut_off_is_as_wide_at_its_end_as_it_was_last(end: float) -> None:
+    """Growing all the while, a^2 = 3 t, of radii that are not one; of what has parted nothing presses at last."""
+    time = end * np.linspace(0.0, 1.0, 41)
+    march: Any = SimpleNamespace(time=time, depth=time, separated=False, radius=np.sqrt(3.0 * time[1:]))
+    march.radius_time = time[1:]
+    shares, squares = squared_radius(march)
+    np.testing.assert_allclose(squares, 3.0 * end * shares, rtol=1e-12, atol=1e-15 * end)
+    march.separated = True
+    assert squared_radius(march)[1][-1] == 0.0
+    march.radius = np.full(40, 0.2)
+    np.testing.assert_allclose(squared_radius(march), ([0.0, 1.0], [0.04, 0.04]), rtol=1e-12)
+
+
 @pytest.mark.parametrize("before", [1, 2, 3, 9])
 def test_a_squared_radius_that_turns_between_rows_is_known_there_by_those_before(before: int) -> None:
     """A parabola up to the turn, another one after it, which rows on either side do not show."""
@@ -772,6 +904,17 @@ def trusted(order: int, relaxation: Relaxation, flat: bool) -> Trust:
         for number, error in enumerate((1e-4, 1e-4 * 2**order, 1e-4 * 4**order))
     )
     return trust((fine, half, quarter), order, (1.0 / STEPS, 1.0 / STEPS), flat)
+
+
+@pytest.mark.parametrize("pressed", [0, 1, 2])
+def test_ends_of_which_one_is_unknown_show_no_order_and_take_none(pressed: int) -> None:
+    """A run that still presses has neither duration nor restitution; the force has its order all the same."""
+    curves = [made_up(STEPS // 2**number, lambda s, e=4.0**number: 1e-4 * e * s) for number in range(3)]
+    whole = trust((curves[0], curves[1], curves[2]), 2, (1.0 / STEPS, 1.0 / STEPS), False)
+    curves[pressed] = replace(curves[pressed], separated=False)
+    found = trust((curves[0], curves[1], curves[2]), 2, (1.0 / STEPS, 1.0 / STEPS), False)
+    assert found == whole
+    assert found.orders["duration"] == found.orders["restitution"] == found.orders["force"] == 3.0
 
 
 @pytest.mark.parametrize("order", [1, 2])
@@ -813,6 +956,24 @@ def test_a_dashpot_takes_an_order_by_the_share_that_it_carries_whatever_relaxes_
         assert much[name] == pytest.approx(1.0, abs=1e-3), name
 
 
+@pytest.mark.parametrize("duration", [1.0, 1e-3])
+@pytest.mark.parametrize("late", [1e-5, 0.05])
+def test_a_body_strained_much_errs_in_its_duration_by_no_less_a_share_than_in_its_force(
+    duration: float, late: float
+) -> None:
+    """Two meshes may agree in when a contact ends by chance; where they do not it is left as it is."""
+    first = replace(TRUTH, duration=duration)
+    other = replace(made_up(STEPS, lambda s: np.full_like(s, 0.01)), duration=duration * (1.0 + late))
+    change = Variation(first, replace(other, depth=first.depth), 1.3)
+    whole, values = _throughout(change).errors, first.quantities
+    force, end = change.errors["peak_force"] / values["peak_force"], change.errors["duration"] / values["duration"]
+    assert (force > end) == (late < 0.01)
+    assert whole["duration"] == pytest.approx(max(force, end) * duration)
+    assert whole | {"duration": 0.0} == pytest.approx(change.errors | {"duration": 0.0})
+    for same in (Variation(first, first, 1.0), Variation(*2 * [replace(first, separated=False)], 1.0)):
+        assert _throughout(same) is same
+
+
 def test_energy_that_is_lost_may_belong_to_any_term_that_there_is() -> None:
     """Of an account that misses 0.25 J, whichever term they are missing from lies within its bar."""
     lost = {"contact": 0.05, "numerical": -0.1, "residual": 0.1}
@@ -845,7 +1006,45 @@ def test_where_finer_steps_fail_other_settings_are_told_by_no_fewer_than_were_as
     finest = few.steps * failing
     found = _time_steps(lambda one: TRUTH if one.steps <= finest else None, few, False)
     assert (None in found.changes) == (failing < 4), "then nothing is known of the steps"
-    assert found.cheap >= few.steps
+    assert few.steps <= found.cheap <= finest, "with those that fail nothing would be known of any setting"
+
+
+@pytest.mark.parametrize("steps", [STEPS_AT_DEFAULT, 4 * STENCIL - 4])
+def test_usual_steps_are_halved_twice_and_fewer_than_tell_a_polynomial_are_doubled_twice(
+    steps: int, settings: Numerics
+) -> None:
+    """A quarter of the steps that are usual costs little; what is quartered has the rows of a polynomial at least."""
+    asked = list[int]()
+
+    def run(one: Numerics) -> Curve:
+        asked.append(one.steps)
+        return made_up(one.steps, np.zeros_like)
+
+    found = _time_steps(run, settings.varied(steps=steps), False)
+    times = (1.0, 0.5, 0.25) if steps >= 4 * STENCIL else (1.0, 2.0, 4.0)
+    assert asked == [steps * one for one in times]
+    assert found.cheap == asked[-1], "other settings are told by the march that is at hand"
+
+
+def test_steps_as_long_as_a_relaxation_under_a_flat_end_leave_the_finest_run_and_two_and_a_half_times_its_change(
+    settings: Numerics,
+) -> None:
+    """No order shows: the finer of two runs errs by less than twice their distance. Other settings take few steps."""
+    strike = replace(STRIKE, relaxation=Relaxation(1.0, (1.0,), (1.0 / STEPS,)))
+    runs = dict[int, Curve]()
+
+    def run(one: Numerics) -> Curve:
+        made = made_up(one.steps, lambda s: 1e-3 * s * STEPS / one.steps)
+        return runs.setdefault(one.steps, replace(made, strike=strike))
+
+    found = _time_steps(run, settings, True)
+    (change,), (jitter,) = found.changes, found.jitter
+    assert isinstance(change, Variation)
+    assert found.value is change.first is jitter.first is runs[STEPS]
+    assert change.second is runs[STEPS // 2]
+    assert (change.factor, jitter.factor) == (2.5, 1.0)
+    assert found.cheap == STEPS // 4 in runs
+    assert found.jitter_falls
 
 
 @pytest.mark.parametrize("failing", [2, 4])

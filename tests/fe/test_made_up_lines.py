@@ -11,7 +11,17 @@ import pytest
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.variation import SAFETY
 from fe_contact.waves.line import AWAY, UNSHOWN, Line, Run, _ended_later
-from fe_contact.waves.line_reading import CLEAR, DEPTH, FORCE, RINGING, TIME, RodReading, _bar_ended, _cleaned
+from fe_contact.waves.line_reading import (
+    CLEAR,
+    DEPTH,
+    FORCE,
+    RINGING,
+    TIME,
+    RodReading,
+    _bar_ended,
+    _cleaned,
+    _rod_ended,
+)
 from fe_contact.waves.targets._block import plan
 from lumped import Scene
 
@@ -226,3 +236,15 @@ def test_a_contact_ends_with_the_front_that_takes_its_force(
     ends = [end] if drop is None else [end, end]
     np.testing.assert_allclose(rows[TIME], [*time[:kept], *ends], rtol=1e-12)
     np.testing.assert_allclose(rows[FORCE], [*forces[:kept], *([] if drop is None else [drop]), 0.0], atol=1e-12)
+
+
+@pytest.mark.parametrize("gravity", [0.0, 9.81])
+def test_a_rod_that_has_left_is_told_where_and_as_fast_as_it_was_when_it_left(gravity: float) -> None:
+    """Back along its free flight from the last row, which lies beyond the end; nothing presses or is dented there."""
+    end, time = 2.3, np.arange(4.0)
+    path, speed = 0.7 - 1.5 * (time - end) + 0.5 * gravity * (time - end) ** 2, -1.5 + gravity * (time - end)
+    rows = np.array([time, path, speed, [1.0, 5.0, 2.0, 9.0], [0.1, 0.5, 0.2, 0.9]])
+    found = _rod_ended(rows, end, gravity)
+    np.testing.assert_array_equal(found[:, :-1], rows[:, :3])
+    assert found[:, -1] == pytest.approx([end, 0.7, -1.5, 0.0, 0.0])
+    np.testing.assert_array_equal(rows[TIME], time)

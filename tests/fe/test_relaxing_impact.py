@@ -19,6 +19,7 @@ from fe_contact.budget.curve import Curve, extrapolated
 from fe_contact.budget.solved import ImpactModel
 from fe_contact.errors import ContactLost
 from fe_contact.large_strains import ELASTIC
+from fe_contact.march.impact import step_length
 from fe_contact.plastic.impact import YIELDING
 from fe_contact.relaxing_impact import RELAXING, Instant, Marcher, plan
 from fe_contact.settings import Numerics, WaveNumerics
@@ -106,6 +107,23 @@ def test_a_volume_that_stands_apart_does_not_relax(name: str) -> None:
     left, lasting = law.over(fading).respond(stretch, fading.at_rest(4, 1)), law.lasting.respond(stretch, ())
     assert left.stress == pytest.approx(lasting.stress, rel=1e-5)
     assert abs(lasting.stress[3]) < 0.5 * abs(law.sudden.respond(stretch, ()).stress[3])
+
+
+@pytest.mark.parametrize("lame", [0.5, 2.0, 40.0])
+def test_where_all_relaxes_alike_what_lasts_is_a_share_of_all_and_what_fades_has_the_ratio_of_the_body(
+    lame: float,
+) -> None:
+    """Poisson's ratio lame/(2 (lame + shear)); of what keeps its volume a half."""
+    law = FadingLaw(Hyperelastic(YEOH, 1.0, lame), NETWORK, False)
+    fading, share = Fading.over(NETWORK, 1e7), NETWORK.relaxed / NETWORK.glassy
+    for way in (STRETCH, SHEAR, SWELLING):
+        at_once, lasting = (one.respond(way[:, None], ()) for one in (law.sudden, law.lasting))
+        assert lasting.stress == pytest.approx(share * at_once.stress, rel=1e-12)
+        assert lasting.energy == pytest.approx(share * at_once.energy, rel=1e-12)
+        long_after = law.over(fading).respond(way[:, None], fading.at_rest(4, 1))
+        assert long_after.stress == pytest.approx(lasting.stress, rel=1e-5, abs=1e-6 * np.abs(lasting.stress).max())
+    assert law.branches_nu == pytest.approx(lame / (2.0 * (lame + 1.0)))
+    assert replace(law, steady=True).branches_nu == 0.5
 
 
 def test_what_bends_the_tangent_of_a_body_that_relaxes_drifts_with_its_gradient_as_it_says() -> None:
@@ -308,7 +326,7 @@ def test_steps_on_a_spring_err_as_their_square_whatever_time_was_expected(
         march = on_spring(strike, numerics, unit, scale, late * depth / unit).march()
         found = Curve.of(march, strike).quantities
         assert march.radius == pytest.approx(np.where(march.depth[1:-1] > late * depth, unit, 0.0))
-        assert march.work.iterations == march.work.steps
+        assert march.work == (len(march.radius), len(march.radius), len(march.radius))
         times.append(march.time)
         errors.append([found[name] / value - 1.0 for name, value in true.items()])
         assert abs(march.energy["residual"]) < 1e-3 * energy
@@ -318,6 +336,27 @@ def test_steps_on_a_spring_err_as_their_square_whatever_time_was_expected(
     few, many = np.abs(errors)
     assert few.max() < 1e-3
     assert np.all(many < np.maximum(0.3 * few, 1e-7))
+
+
+@pytest.mark.parametrize("gravity", [0.0, 3.0])
+def test_a_striker_that_leaves_within_a_step_is_slowed_by_half_of_the_force_that_pressed_before(
+    gravity: float, settings_of: Callable[..., Numerics]
+) -> None:
+    """Nothing presses at the step's end: the mean of both, in units of length and force of their own."""
+    unit, scale, mass = 0.02, 3.0, 0.4
+    strike = Strike(lambda r: r**2, mass, 0.7, gravity, Relaxation(1.0), 10.0)
+    numerics = settings_of(strike, steps=60).varied(contact_time=0.1, peak_share=0.5)
+    marcher = on_spring(strike, numerics, unit, scale)
+    here = replace(marcher._touch(), time=0.09, depth=1e-4, velocity=-0.6 / unit, impulse=5.0, force=0.2)
+    there = marcher._next([here] * 30, None)
+    length = 0.1 * step_length(29, 60, 0.5)
+    assert there.time == pytest.approx(0.09 + length)
+    assert unit * there.depth == pytest.approx(
+        unit * 1e-4 - 0.6 * length + 0.5 * length**2 * (gravity - scale * 0.2 / mass)
+    )
+    assert there.depth < 0.0
+    assert unit * there.velocity == pytest.approx(-0.6 + length * (gravity - 0.5 * scale * 0.2 / mass))
+    assert (there.force, there.impulse) == (0.0, 5.0)
 
 
 REFUSED = {

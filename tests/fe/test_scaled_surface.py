@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
@@ -15,12 +15,15 @@ import lumped
 import meshes
 from fe_contact.assembly.far_field import boussinesq
 from fe_contact.assembly.operators import surface_operator
+from fe_contact.bodies.memory import area_weights, graded
 from fe_contact.bodies.pressing import EDGE_WINDOW
 from fe_contact.budget.plan import plan
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactSolution
 from fe_contact.errors import ContactLost
+from fe_contact.settings import Numerics
 from fe_contact.steppers.scaled_surface import ScaledSurface, Stepper, _missed
+from fe_contact.steppers.steps import Strike
 from fe_contact.targets import half_space
 from lumped import Relaxation
 from lumped.shapes import Parabola, Shape, Sphere
@@ -291,3 +294,78 @@ def test_a_contact_that_only_shrinks_is_lost(steps: int, smallest: float) -> Non
     with pytest.raises(ContactLost):
         settled.run()
     assert 0.3 ** len(settled.tried) < smallest <= 0.3 ** (len(settled.tried) - 1)
+
+
+def test_a_surface_remembers_a_pressure_with_all_of_its_force_and_none_beyond_its_points() -> None:
+    """Hertz's on a unit mesh that is scaled: 1/scale of it a place, scale times of the force."""
+    scale, points = 0.2, np.linspace(0.01, 3.0, 300)
+    pressure = np.sqrt(np.maximum(1.0 - points**2, 0.0))
+    weights = 2.0 * np.pi * points * np.gradient(points)
+    radii = graded(1.0, 400)
+    stepper: Any = SimpleNamespace(
+        surface=SimpleNamespace(operator=SimpleNamespace(points=points, weights=weights)),
+        radii=radii,
+        areas=area_weights(radii),
+    )
+    spread = Stepper._spread(stepper, pressure, scale)
+    assert stepper.areas @ spread == pytest.approx(scale * weights @ pressure, rel=1e-12)
+    inside = radii < 0.95 * scale
+    assert spread[inside] == pytest.approx(np.sqrt(1.0 - (radii[inside] / scale) ** 2) / scale, rel=0.02)
+    assert not spread[radii > 3.0 * scale].any()
+    assert not Stepper._spread(stepper, np.zeros(300), scale).any()
+    stepper.radii = np.array([0.0, 5.0])
+    stepper.areas = np.array([0.0, 1.0])
+    assert Stepper._spread(stepper, pressure, scale) == pytest.approx([1.0 / scale, 0.0], rel=0.01), "no area sees it"
+
+
+def test_a_step_expects_its_contact_as_a_like_march_has_told_or_its_square_to_go_on_as_it_did() -> None:
+    """a^2 = t (1 - t/2), a parabola from the touch on; at least a twentieth of the last area is left."""
+
+    def after(*times: float) -> Any:
+        return [SimpleNamespace(radius_time=time, radius=np.sqrt(time * (1.0 - 0.5 * time))) for time in times]
+
+    def expected(told: Sequence[float], steps: Any, time: float, velocity: float, length: float) -> float:
+        stepper: Any = SimpleNamespace(expected=told, scheme=SimpleNamespace(sample=0.25))
+        state: Any = SimpleNamespace(velocity=velocity, time=time)
+        return Stepper._expected_radius(stepper, state, steps, length)
+
+    assert expected((), [], 0.0, 1.0, 0.1) == 0.0
+    assert expected((0.3, 0.4), [], 0.0, 1.0, 0.1) == 0.3
+    assert expected((0.3, 0.4), after(0.1), 0.1, 1.0, 0.1) == 0.4
+    for steps in (after(0.1, 0.2), after(0.1, 0.25, 0.4)):
+        last = steps[-1].radius_time
+        growing, receding = (expected((0.3, 0.4), steps, last, velocity, 0.2) for velocity in (1.0, -1.0))
+        for found, time in ((growing, last + 0.2), (receding, last + 0.05)):
+            assert found == pytest.approx(np.sqrt(time * (1.0 - 0.5 * time)))
+    vanishing = after(1.0, 1.5, 1.9)
+    assert expected((), vanishing, 1.9, 1.0, 1.0) == pytest.approx(np.sqrt(0.05) * vanishing[-1].radius)
+
+
+def test_the_surfaces_part_by_the_gap_between_what_is_remembered_and_the_striker() -> None:
+    """And what the striker does on the way there it does not do on the body: force x way less pressure x dent."""
+    stepper: Any = SimpleNamespace(heights=np.array([0.0, 0.3, 0.9]), areas=np.array([1.0, 2.0, 3.0]))
+    surface: Any = SimpleNamespace(strain=np.array([[0.5, 0.2, 0.0], [9.0, 9.0, 9.0]]))
+    assert Stepper.clearance(stepper, surface, 0.4) == pytest.approx([0.1, 0.1, 0.5])
+    stepper._spread = lambda pressure, scale: scale * pressure
+    later = SimpleNamespace(depth=0.7, memory=SimpleNamespace(strain=surface.strain + np.array([[0.1], [5.0]])))
+    solution = SimpleNamespace(pressure=np.array([4.0, 2.0, 0.0]))
+    before: Any = SimpleNamespace(depth=0.4, memory=surface)
+    step: Any = SimpleNamespace(state=later, solution=solution, scale=0.5, force=6.0)
+    assert Stepper.between(stepper, before, step) == pytest.approx(6.0 * 0.3 - 0.5 * (4.0 * 1.0 + 2.0 * 2.0) * 0.1)
+
+
+@pytest.mark.parametrize("steps", [40, 4000])
+def test_a_memory_reaches_beyond_the_largest_contact_and_has_places_for_every_step(
+    steps: int, hertz_strike: Callable[..., Strike], settings_of: Callable[..., Numerics]
+) -> None:
+    """A third farther than that at most, or it would be coarser than it says, and no fewer than five places a step."""
+    strike = hertz_strike()
+    numerics = settings_of(strike, steps=steps)
+    stepper = Stepper(strike, surface(0.3), numerics)
+    assert 1.1 < stepper.radii[-1] / numerics.contact_radius < 1.0 + 1.0 / 3.0
+    assert max(500, 5 * steps) < stepper.radii.size <= max(1000, 10 * steps)
+    assert stepper.heights == pytest.approx(0.5 * stepper.radii**2)
+    assert stepper.areas.sum() == pytest.approx(np.pi * stepper.radii[-1] ** 2, rel=1e-2)
+    later = replace(strike, memory=stepper.at_rest())
+    again = Stepper(later, surface(0.3), numerics.varied(steps=8 * steps))
+    assert again.radii == pytest.approx(stepper.radii), "of a contact before"
