@@ -128,6 +128,29 @@ def test_the_law_of_a_bar_is_the_rectangle_of_one_echo() -> None:
     np.testing.assert_allclose(np.interp(places, found.history.time, found.history.force), 300.0, rtol=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("density", "modulus", "area", "height", "velocity"),
+    [(7850.0, 2.1e11, 3e-4, 0.2, 5.0), (3.0, 2e3, 1e-4, 0.05, 0.02), (1e3, 1e6, 4.0, 7.0, 1e-3)],
+)
+def test_the_impact_of_any_bar_is_that_of_its_density_and_wave(
+    density: float, modulus: float, area: float, height: float, velocity: float
+) -> None:
+    """density c A v for 2 L/c, over all of its face, however faint, and nothing once it has left."""
+    striker = {"area": area, "height": height, "velocity": velocity, "material.density": density, "material.E": modulus}
+    scene = Scene.load("bar-impact", {f"striker.{key}": number for key, number in striker.items()})
+    found, speed = simulate(bar_waves.of(scene), scene, 1e-3), math.sqrt(modulus / density)
+    values = {name: quantity.value for name, quantity in found.quantities.items()}
+    force, duration = density * speed * area * velocity, 2.0 * height / speed
+    exact = {"peak_force": force, "duration": duration, "restitution": 1.0, "impulse": force * duration}
+    assert {name: values[name] for name in exact} == pytest.approx(exact, rel=1e-12, abs=0.0)
+    assert values["peak_depth"] == pytest.approx(0.25 * velocity * duration, rel=1e-12, abs=0.0)
+    history = found.history
+    assert history.force[:-1] == pytest.approx(force, rel=1e-12, abs=0.0)
+    assert history.contact_radius[:-1] == pytest.approx(math.sqrt(area / math.pi), rel=1e-12, abs=0.0)
+    assert (history.force[-1], history.contact_radius[-1]) == (0.0, 0.0)
+    assert found.energy["in"] == pytest.approx(0.5 * density * area * height * velocity**2, rel=1e-12, abs=0.0)
+
+
 @pytest.mark.parametrize("gravity", [0.0, 3.0, 10.0, 25.0])
 def test_the_centre_of_a_bar_moves_by_its_force_and_no_energy_is_lost(gravity: float) -> None:
     """M dv/dt = M g - F and dx/dt = v from the rows alone, by the trapezium rule; energy from the waves themselves."""

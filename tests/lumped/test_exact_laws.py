@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from decimal import Decimal, localcontext
 from itertools import pairwise
 from types import ModuleType, SimpleNamespace
 from typing import Any, NamedTuple
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 from lumped import Result, Scene, laws, simulate
 from lumped.laws import _assembly, _hereditary
 from lumped.laws._assembly import Answer
+from lumped.materials import Relaxation
 from lumped.result.history import End
 from lumped.scene.tables import Motion
 from lumped.shapes.cone import Cone
@@ -25,7 +27,7 @@ from lumped.shapes.power import PowerProfile
 from lumped.shapes.sphere import Sphere
 from lumped.solvers.hereditary.pieces import alone
 from lumped.solvers.mdr.nest import REST, Adaptive, Grid, Nest, Prescribed, coarse, limit, predicted_turn, problem_of
-from lumped.solvers.mdr.row import SERIES_BELOW, Instant, fading
+from lumped.solvers.mdr.row import SERIES_BELOW, Instant, fading, fadings, followed, followed_bend, left, stretched
 
 Array = NDArray[np.float64]
 
@@ -345,7 +347,41 @@ def test_a_fading_branch_is_integrated_however_long_the_step(ratio: float) -> No
     u, du = 0.5 * h * (places + 1.0), 0.5 * h * weights
     e = np.exp(-u / tau)
     integrals = (du @ e, du @ (e * (h - u)), du @ (e * (h - u) ** 2) / h, tau * (du @ np.expm1(-u / tau) ** 2))
-    assert fading(tau, h) == pytest.approx((math.exp(-ratio), *integrals), rel=1e-12)
+    assert fading(tau, h) == pytest.approx((math.exp(-ratio), *integrals), rel=1e-12, abs=0.0)
+
+
+@pytest.mark.parametrize("ratio", [1e-3, 0.06, 0.2, 0.35, np.nextafter(SERIES_BELOW, 0.0), SERIES_BELOW, 2.0])
+def test_a_fading_branch_loses_no_digits_between_its_series_and_its_closed_form(ratio: float) -> None:
+    """By the closed form in 60 digits, of which those that cancel are not missed."""
+    with localcontext() as digits:
+        digits.prec = 60
+        x, tau = Decimal(ratio), Decimal("0.5")
+        gone = 1 - (-x).exp()
+        grown = x - gone
+        bent, spilled = x - 2 * grown / x, grown - gone * gone / 2
+        exact = [float(one) for one in (1 - gone, tau * gone, *(tau * tau * one for one in (grown, bent, spilled)))]
+    assert fading(0.5, 0.5 * ratio) == pytest.approx(exact, rel=5e-15, abs=0.0)
+
+
+def test_memories_follow_lines_and_parabolas_as_their_integral_says() -> None:
+    """z' = E q - z/tau over a time, of two branches, by Gauss's rule for the integral of E q exp(-u/tau)."""
+    modulus, memory = Relaxation(1.0, (3.0, 0.7), (0.2, 5.0)), [0.4, -1.1]
+    begin, mean, end, h = 0.3, 1.7, 0.9, 0.6
+    share, weights = np.polynomial.legendre.leggauss(30)
+    share, weights = 0.5 * (share + 1.0), 0.5 * h * weights
+    # through the ends, with the mean that is left once the line has its own
+    parabola = begin + (end - begin) * share + 6.0 * (mean - 0.5 * (begin + end)) * share * (1.0 - share)
+    faded = fadings(modulus, h)
+
+    def exact(q: Array) -> list[float]:
+        pairs = zip(modulus.moduli, modulus.times, memory, strict=True)
+        return [z * math.exp(-h / t) + e * float(weights @ (q * np.exp((share - 1.0) * h / t))) for e, t, z in pairs]
+
+    line = begin + (end - begin) * share
+    assert followed(modulus, memory, faded, begin, end, h) == pytest.approx(exact(line), rel=1e-12)
+    assert followed_bend(modulus, memory, faded, begin, mean, end, h) == pytest.approx(exact(parabola), rel=1e-12)
+    assert stretched(modulus, memory, faded, 2.5) == pytest.approx(exact(np.full(30, 2.5)), rel=1e-12)
+    assert left(modulus, h) == pytest.approx([math.exp(-3.0), math.exp(-0.12)], rel=1e-14)
 
 
 @given(st.integers(0, 2**32 - 1))
