@@ -20,7 +20,7 @@ from lumped.indentation import FiniteSize, power_law
 from lumped.laws import _force_law, _hereditary
 from lumped.laws._assembly import AROUND, BENDS, Answer, bars
 from lumped.numbers import Array
-from lumped.result.history import End
+from lumped.result.history import AT_REST, End
 from lumped.result.result import UNITS, meets
 from lumped.scene.tables import LawChoice
 from lumped.solvers.point import half_widths
@@ -406,6 +406,63 @@ def test_a_peak_is_sought_no_closer_than_two_integrations_place_it() -> None:
         bar = bars(fine, coarse, 1.0)[0]["peak_time"].error
         assert 0.999 < bar / (apart or 2.0 * slope) < 1.2
         assert len(counts) <= 5
+
+
+def test_a_peak_s_time_is_known_to_where_its_height_is_the_same_to_rounding() -> None:
+    """Though two integrations agree in all that they say."""
+    values = {**dict.fromkeys(UNITS, 1.0), "peak_time": 1.0}
+    answer = Answer(np.linspace(0.0, 2.0, 41), Pushed(0.0, []), values, End.SEPARATED)
+    bar = bars(answer, answer, 1.0)[0]["peak_time"].error or 0.0
+    shifts = np.geomspace(1e-12, 1e-3, 2000)
+    alike = shifts[answer.columns.force(1.0 + shifts) == 1.0].max()
+    assert alike <= bar <= 2.0 * alike
+
+
+@pytest.mark.parametrize(("safety", "end"), [(1.0, End.SEPARATED), (1.5, End.SEPARATED), (2.0, End.REST)])
+def test_bars_are_a_safety_times_what_two_integrations_differ_by(safety: float, end: End) -> None:
+    """At times that both know: of the force the largest and the norm, over the norm of the force; a tenth of the norm
+    of any quantity at least, of its size but for a restitution, and of none where there is none.
+    """
+    slope, times = 1e-3, (np.linspace(0.0, 2.0, 401), np.linspace(0.0, 1.8, 601))
+    fine = {name: 5.0 for name in UNITS if name != "history_l2"}
+    fine |= {"restitution": 0.5, "peak_depth": -4.0, "duration": None, "peak_time": 1.0}
+    coarse = {**fine, "peak_force": 5.1, "impulse": 5.0 - 3e-9}
+    answers = [
+        Answer(at, Pushed(by, []), told, end) for at, by, told in zip(times, (0.0, slope), (fine, coarse), strict=True)
+    ]
+    found, force = bars(*answers, safety)
+    rounding = 1e-12 + (AT_REST if end is End.REST else 0.0)
+    norm = slope * math.sqrt(2.0**3 / 3.0) / math.sqrt(2.0 - 4.0 / 3.0 + 2.0 / 5.0)
+    errors = {name: quantity.error for name, quantity in found.items()}
+    assert list(found) == list(UNITS)
+    assert force == pytest.approx(safety * (2.0 * slope + 5.0 * rounding), rel=1e-12)
+    assert errors["history_l2"] == pytest.approx(safety * norm + rounding, rel=1e-4)
+    least = 0.1 * (errors["history_l2"] - rounding) / safety + rounding
+    assert errors["peak_force"] == pytest.approx(safety * 0.1, rel=1e-12)
+    assert errors["peak_depth"] == pytest.approx(safety * 4.0 * least, rel=1e-12)
+    assert errors["restitution"] == pytest.approx(safety * least, rel=1e-12)
+    assert errors["impulse"] == pytest.approx(safety * 5.0 * least, rel=1e-12)
+    assert found["duration"] == Quantity(None, None, "s")
+    assert {name: quantity.value for name, quantity in found.items()} == {"history_l2": 0.0, **fine}
+
+
+@pytest.mark.parametrize("asked", [1e-5, 1e-9, 1e-10, 1e-12, 1e-20])
+def test_a_march_is_compared_with_one_a_hundred_times_less_fine(asked: float) -> None:
+    """As fine as is asked for once again a hundred times, but no finer than rounding lets it be."""
+    marched = list[float]()
+
+    def march(tolerance: float) -> tuple[Answer, int]:
+        marched.append(tolerance)
+        values = {**dict.fromkeys(UNITS, 1.0), "peak_time": 1.0}
+        return Answer(np.linspace(0.0, 2.0, 41), Pushed(tolerance, []), values, End.SEPARATED), len(marched)
+
+    judged = _force_law._compared(march, asked)
+    fine, coarse = marched
+    assert coarse == pytest.approx(100.0 * fine, rel=1e-12)
+    assert fine == pytest.approx(max(0.01 * asked, 1e-12), rel=1e-12)
+    assert judged.steps == 1, "those of the finer one"
+    assert judged.answer.columns.by == fine  # type: ignore[attr-defined]  # of the test's own columns
+    assert judged.force_error == pytest.approx(2.0 * (2.0 * (coarse - fine) + 1e-12), rel=1e-3)
 
 
 @pytest.mark.parametrize("rate", [-3.0, 0.0, 0.4])

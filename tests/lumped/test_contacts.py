@@ -18,6 +18,7 @@ from lumped.laws.correspondence import Correspondence
 from lumped.result.history import End
 from lumped.result.result import Result
 from lumped.solvers.point.bodies import Bodies, State
+from lumped.solvers.point.contact import contact
 from lumped.solvers.point.memory import RULES, HereditaryLoad, recovering, rule_of
 from lumped.solvers.point.track import Outcome
 
@@ -153,6 +154,18 @@ def test_a_dashpot_that_lets_go_at_depth_zero_alone_is_followed_until_the_scene_
     result = simulate(Correspondence(exit="depth"), scene, 1e-4)
     assert result.message == End.TIME.value
     assert result.history.time[-1] == pytest.approx(scene.end_time, rel=1e-12)
+
+
+@pytest.mark.parametrize(("viscosity", "end"), [(10.0, End.SEPARATED), (1e3, End.SEPARATED), (1e4, End.REST)])
+def test_what_creeps_back_slower_than_any_number_tells_is_at_rest(viscosity: float, end: End, impact: Build) -> None:
+    """What a dashpot leaves of the velocity at depth zero falls as a power of it, and below 1e-20 is none."""
+    scene = impact(viscosity=viscosity, profile="parabola", end_time=1e9)
+    law, bodies = laws.correspondence.law_of(scene, exit="depth"), _force_law.bodies_of(scene)
+    found = contact(law, bodies, "depth", law.touch(bodies), 0.0, scene.end_time, 1e-6)
+    assert found.end is end
+    assert found.last.rate < 0.0
+    assert (abs(found.last.rate) < 1e-20 * scene.velocity) is (end is End.REST)
+    assert found.end_time < scene.end_time
 
 
 def test_flights_are_shorter_than_from_a_flat_surface(impact: Build) -> None:
