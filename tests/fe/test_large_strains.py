@@ -26,8 +26,16 @@ from fe_contact.solids.block import press as press_block
 from fe_contact.solids.bulk import Bulk, Pattern
 from fe_contact.solids.contact import OnDeformed, OnRound, OnUndeformed
 from fe_contact.solids.finite import Hyperelastic
-from fe_contact.solids.newton import BeyondRange, Encounter, Equilibrium, EquilibriumLost, _descended, balanced
-from fe_contact.solids.pressing import Solid, advanced, press
+from fe_contact.solids.newton import (
+    BeyondRange,
+    Encounter,
+    Equilibrium,
+    EquilibriumLost,
+    _descended,
+    _descending,
+    balanced,
+)
+from fe_contact.solids.pressing import Solid, _core, _together, advanced, press
 from fe_contact.solids.rolled import Rolled
 from lumped import BadInput, Scene, laws
 from lumped.indentation import Indentation
@@ -357,6 +365,47 @@ def test_iterations_from_rest_to_a_depth_are_those_of_all_its_equilibria(monkeyp
     assert first.iterations == sum(counted) > len(counted)
     counted.clear()
     assert advanced(body.encounter, first, 0.2 / body.unit, 500.0).iterations == sum(counted) > len(counted) > 1
+
+
+def test_one_mesh_serves_depths_of_about_one_size_under_a_tip_and_all_of_them_elsewhere() -> None:
+    """Up to twice the smallest of each mesh, whatever the order they are asked for in."""
+    depth = np.array([4.1, 1.0, 2.0, 2.1, 1.7, 4.2, 8.5])
+    assert _together(Cone(20.0), depth) == [[1, 4, 2], [3, 0, 5], [6]]
+    assert _together(Sphere(1.0), depth) == [[1, 4, 2, 3, 0, 5, 6]]
+
+
+def test_strains_may_be_large_halfway_from_the_contact_to_the_end() -> None:
+    """Of small triangles in a row those whose middles are no farther."""
+    corners = np.arange(11.0)
+    points = np.array([np.repeat(corners, 2), np.tile([0.0, -1e-3], 11)])
+    triangles = np.array([[2 * i, 2 * i + 1, 2 * i + 2] for i in range(10)]).T
+    mesh, surface = SimpleNamespace(p=points, t=triangles), SimpleNamespace(zone=2.0)
+    body: Any = SimpleNamespace(basis=SimpleNamespace(mesh=mesh), surface=surface)
+    assert _core(body).tolist() == [0, 1, 2, 3, 4, 5], "up to 6 of 10: the middles are a third of a side on"
+
+
+class Misled:
+    """A spring at a displacement, whose tangent is right for a body at rest alone, and else a thousandth."""
+
+    def __init__(self, place: float, asked: list[tuple[bool, bool, int]]) -> None:
+        self.displacement, self.residual, self.energy = np.array([place]), np.array([place]), 1.0 + 0.5 * place**2
+        touching, self.asked = np.array([abs(place) > 1e-3 * k for k in range(3)]), asked
+        self.touch: Any = SimpleNamespace(touching=touching, stiffening=np.ones(1))
+        self.encounter: Any = SimpleNamespace(body=SimpleNamespace(free=np.array([0])))
+
+    def factors(self, convex: bool, unstrained: bool, meets: Array) -> Callable[[Array], Array]:
+        self.asked.append((convex, unstrained, int(np.count_nonzero(meets))))
+        return lambda load: load if unstrained else 1e3 * load
+
+
+def test_after_two_blunt_steps_a_body_is_taken_as_at_rest_and_what_they_meet_as_touching() -> None:
+    """Steps a thousand times too long lessen the energy where they are cut: they say that the tangent is no guide."""
+    asked = list[tuple[bool, bool, int]]()
+    here: Any = Misled(0.7, asked)
+    found = _descending(here, lambda place: Misled(float(place[0]), asked), 1e-9)  # type: ignore[arg-type, return-value]  # what stands for a balance
+    assert found.balance.displacement == pytest.approx([0.0], abs=1e-12)
+    assert asked == [(False, False, 0), (False, False, 3), (True, True, 3), (False, False, 0)]
+    assert found.iterations == 4
 
 
 def descended(energy: Callable[[float], float], slope: float, way: float = 0.3) -> float:

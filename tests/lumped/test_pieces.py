@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from types import ModuleType
 from typing import Any
 
@@ -12,7 +13,7 @@ from numpy.polynomial import chebyshev as reference
 from numpy.polynomial import legendre
 
 from lumped import Scene, simulate
-from lumped.errors import FeContactError
+from lumped.errors import FeContactError, NotReached
 from lumped.laws import correspondence, ting
 from lumped.laws._hereditary import FEW, MORE, once, problem_of
 from lumped.laws.base import simulation
@@ -30,7 +31,7 @@ from lumped.solvers.hereditary.pieces import (
     together,
 )
 from lumped.solvers.hereditary.rebound import Rebound
-from lumped.solvers.radau import place_of, radau, through_zero
+from lumped.solvers.radau import chebyshev_through_zero, place_of, radau, through_zero
 
 
 def test_polynomials_are_chebyshev_s_of_few_places_and_of_many() -> None:
@@ -74,6 +75,9 @@ def test_the_nodes_integrate_polynomials_as_well_as_rounding_tells(count: int) -
     assert integrals == pytest.approx(at ** (powers + 1) / (powers + 1), rel=0.0, abs=1e-11)
     through = through_zero(at[:, 0], count) @ np.append(0.0, nodes.points)[:, None] ** np.arange(count + 1)
     assert through == pytest.approx(at ** np.arange(count + 1), rel=0.0, abs=1e-11)
+    whole = np.append(0.0, nodes.points)[:, None] ** np.arange(count + 1)
+    by_chebyshev = reference.chebval(place, chebyshev_through_zero(count) @ whole).T
+    assert by_chebyshev == pytest.approx(at ** np.arange(count + 1), rel=0.0, abs=1e-11)
 
 
 @pytest.mark.parametrize("mirrored", [False, True])
@@ -141,12 +145,45 @@ def test_pieces_are_as_long_as_a_share_of_the_largest_force_so_far_allows(sign: 
     assert found.largest == heights[-1]
     errors = np.array([tail(row) for row in force(places)]) / heights
     assert np.all(errors <= 1e-9), "none is longer"
-    lengths = np.diff(found.path.breaks)[1:-1]
+    lengths = np.diff(found.path.breaks)
+    assert lengths[1] <= lengths[0], "little is known of what begins"
+    assert np.all(lengths[1:] <= 3.0 * lengths[:-1] * (1.0 + 1e-9)), "no leaps"
+    lengths = lengths[1:-1]
     allowed = np.clip(0.8 * (errors[1:-2] / 1e-9) ** (-1.0 / 8.0), 0.15, 3.0) * lengths[:-1]
     tried = np.array([np.abs(np.log(length / (guess * 0.8 ** np.arange(3)))).min() for length, guess in
                       zip(lengths[1:], allowed, strict=True)])  # fmt: skip
     assert np.count_nonzero(tried[allowed > 0.0] < 1e-9) > 0.5 * tried.size, "and most are as long as the last one says"
     assert found.largest == pytest.approx(50.001, rel=1e-3)
+
+
+@pytest.mark.parametrize("longest", [0.3, 0.011])
+def test_a_piece_without_a_solution_is_tried_at_a_quarter_of_its_length(longest: float) -> None:
+    """And where none has one, however short, the march is stuck there, or has not begun."""
+    tried = list[float]()
+
+    def attempt(place: float, length: float, state: Array) -> Followed[HereditaryPiece | None]:
+        yield from ()
+        tried.append(length)
+        solved = length < longest and place + length < 4.0
+        return HereditaryPiece(np.ones((1, 9)), 1) if solved else None
+
+    stretch = Stretch(attempt, 0, lambda values: False)
+    found = alone(stretch.march((0.0, 9.0), np.ones(1), 1.0, Settings(1e-6, 8)))
+    assert found.stuck
+    assert found.path.breaks[-1] == pytest.approx(4.0, abs=1e-9)
+    quarters = 4.0 ** -np.ceil(np.log(1.0 / longest) / np.log(4.0))
+    assert found.path.breaks[1] == pytest.approx(quarters, rel=1e-12)
+    failed = [later / length for length, later in pairwise(tried) if later < length and length > 1e-6]
+    assert set(np.round(failed, 9)) == {0.25}
+    with pytest.raises(NotReached, match="from its very start"):
+        alone(stretch.march((5.0, 9.0), np.ones(1), 1.0, Settings(1e-6, 8)))
+
+
+def test_the_breaks_of_a_path_found_before_are_kept() -> None:
+    """Whatever its own errors would ask for."""
+    before = marched(np.cos, (0.0, 9.0), 0.1).path
+    again = marched(lambda places: np.cos(0.1 * places), (0.0, 9.0), 0.1, before=before)
+    assert np.array_equal(again.path.breaks, before.breaks)
 
 
 def test_a_largest_force_so_far_is_what_errors_are_shares_of() -> None:
