@@ -469,6 +469,26 @@ def test_st_venants_material_bears_waves_along_the_stress_down_to_a_stretch(stre
     assert elliptic(tangent) == (3.0 * stretch**2 > 1.0)
 
 
+def test_waves_are_borne_where_the_acoustic_tensor_of_every_direction_is_definite() -> None:
+    """Q_ik = C_ijkl N_j N_l of random tangents, a quarter of a degree apart; near to none it is left open."""
+    rng, angle = np.random.default_rng(5), np.linspace(0.0, np.pi, 720, endpoint=False)
+    direction = np.stack([np.cos(angle), np.sin(angle)])
+    found = list[bool]()
+    for _ in range(200):
+        half = rng.normal(size=(5, 5))
+        tangent = half + half.T + rng.uniform(0.0, 6.0) * np.eye(5)
+        acoustic = np.einsum("ijkl,jn,ln->nik", tangent[:4, :4].reshape(2, 2, 2, 2), direction, direction)
+        least = float(np.linalg.eigvalsh(acoustic).min())
+        if abs(least) > 0.3:
+            found.append(least > 0.0)
+            assert elliptic(tangent[:, :, None]) == found[-1]
+            sound = np.tile(2.0 * np.eye(5)[:, :, None, None], (1, 1, 3, 2))
+            assert elliptic(sound)
+            sound[:, :, 2, 1] = tangent
+            assert elliptic(sound) == found[-1], "one point is enough"
+    assert 30 < sum(found) < len(found) - 30
+
+
 @pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
 def test_whether_waves_are_borne_is_no_question_of_units(unit: float) -> None:
     for stretch in (0.57, 0.9):
