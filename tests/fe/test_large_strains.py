@@ -384,28 +384,62 @@ def test_strains_may_be_large_halfway_from_the_contact_to_the_end() -> None:
     assert _core(body).tolist() == [0, 1, 2, 3, 4, 5], "up to 6 of 10: the middles are a third of a side on"
 
 
-class Misled:
-    """A spring at a displacement, whose tangent is right for a body at rest alone, and else a thousandth."""
+@dataclass
+class Sprung:
+    """A spring at a displacement, with a ``base`` of energy; ``gains``: over Newton's step that by a model of the body,
+    convex or at rest, which is noted as ``asked`` with how many points are to touch.
+    """
 
-    def __init__(self, place: float, asked: list[tuple[bool, bool, int]]) -> None:
-        self.displacement, self.residual, self.energy = np.array([place]), np.array([place]), 1.0 + 0.5 * place**2
-        touching, self.asked = np.array([abs(place) > 1e-3 * k for k in range(3)]), asked
-        self.touch: Any = SimpleNamespace(touching=touching, stiffening=np.ones(1))
+    place: float
+    gains: dict[tuple[bool, bool], float]
+    asked: list[tuple[bool, bool, int]]
+    base: float = 1.0
+    ends: float = np.inf
+
+    def __post_init__(self) -> None:
+        self.displacement = self.residual = np.array([self.place])
+        self.energy = self.base + 0.5 * self.place**2 if self.place <= self.ends else np.inf
+        self.touch: Any = SimpleNamespace(touching=abs(self.place) > 1e-3 * np.arange(3), stiffening=np.ones(1))
         self.encounter: Any = SimpleNamespace(body=SimpleNamespace(free=np.array([0])))
 
     def factors(self, convex: bool, unstrained: bool, meets: Array) -> Callable[[Array], Array]:
         self.asked.append((convex, unstrained, int(np.count_nonzero(meets))))
-        return lambda load: load if unstrained else 1e3 * load
+        return lambda load: self.gains[convex, unstrained] * load
+
+    def descending(self, settled: float) -> Equilibrium:
+        here: Any = self
+        at: Any = lambda place: replace(self, place=float(place[0]))  # noqa: E731  # where else it may be
+        return _descending(here, at, settled)
 
 
 def test_after_two_blunt_steps_a_body_is_taken_as_at_rest_and_what_they_meet_as_touching() -> None:
     """Steps a thousand times too long lessen the energy where they are cut: they say that the tangent is no guide."""
     asked = list[tuple[bool, bool, int]]()
-    here: Any = Misled(0.7, asked)
-    found = _descending(here, lambda place: Misled(float(place[0]), asked), 1e-9)  # type: ignore[arg-type, return-value]  # what stands for a balance
+    found = Sprung(0.7, {(False, False): 1e3, (True, True): 1.0}, asked).descending(1e-9)
     assert found.balance.displacement == pytest.approx([0.0], abs=1e-12)
     assert asked == [(False, False, 0), (False, False, 3), (True, True, 3), (False, False, 0)]
     assert found.iterations == 4
+
+
+@pytest.mark.parametrize("base", [1e-3, 1.0, 1e6])
+def test_descent_ends_where_a_step_changes_a_share_of_the_energy_and_takes_that_step_too(base: float) -> None:
+    """Each of half the way to where it rests: the slope promises half the square of what is left."""
+    asked, left, steps = list[tuple[bool, bool, int]](), 0.7, 1
+    while 0.5 * left**2 > 1e-6 * (base + 0.5 * left**2):
+        left, steps = 0.5 * left, steps + 1
+    found = Sprung(0.7, {(False, False): 0.5}, asked, base).descending(1e-6)
+    assert found.balance.displacement == pytest.approx([0.5 * left], rel=1e-12)
+    assert found.iterations == len(asked) == steps
+    assert found.rate == pytest.approx([-0.5]), "by the last tangent"
+
+
+def test_a_body_whose_energy_has_no_descent_is_lost_once_it_is_taken_as_at_rest() -> None:
+    """Towards a wall: by no step however short, at what it meets there neither."""
+    asked = list[tuple[bool, bool, int]]()
+    body = Sprung(-0.7, {(False, False): 1.0, (True, True): 1.0}, asked, ends=-0.7)
+    with pytest.raises(EquilibriumLost, match="no descent"):
+        body.descending(1e-9)
+    assert asked == [(False, False, 0), (False, False, 3), (True, True, 3)]
 
 
 def descended(energy: Callable[[float], float], slope: float, way: float = 0.3) -> float:
