@@ -49,7 +49,7 @@ WHOLE = sum(CAMPAIGN.values())
 QUARTER = 1.75  # times as many elements and steps, for a quarter of the tolerance
 SCATTER = 0.05  # of Johnson's restitution, an asymptote of what hardly springs back
 ROUNDED = {"shape": "rounded_punch", "flat_radius": 0.01, "edge_radius": 0.01}
-COURSE = Course(Sphere(1.0), 0.3, 1.0, 1e-3, 0.0, first=0.01, firm=0.02, deepest=1.0)
+COURSE = Course(Sphere(1.0), 0.3, 1.0, 1e-3, 0.0, first=0.01, firm=0.02, deepest=0.8)
 ABOUT = {"elements_per_contact": 8.0, "steps": 16, "tolerance": 0.01}
 
 

@@ -17,6 +17,7 @@ from lumped.laws import _force_law
 from lumped.laws.correspondence import Correspondence
 from lumped.result.history import End
 from lumped.result.result import Result
+from lumped.scene.tables import LawChoice
 from lumped.solvers.point.bodies import Bodies, State
 from lumped.solvers.point.contact import contact
 from lumped.solvers.point.memory import RULES, HereditaryLoad, recovering, rule_of
@@ -116,6 +117,36 @@ def test_a_surface_that_creeps_back_is_met_where_it_stands_by_then(
     assert time > speed / bodies.gravity
     assert load.load(there.depth) == pytest.approx(dent * np.exp(-time / creeping), rel=1e-9, abs=1e-12 * dent)
     assert there.depth == pytest.approx(depth - time * (speed - 0.5 * bodies.gravity * time), abs=1e-12 * speed * time)
+
+
+@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize("gravity", [1e-4, 1e-2])
+def test_however_light_they_meet_again_at_the_surface_as_it_was(rule: str, gravity: float, impact: Build) -> None:
+    """After a flight of many relaxation times nothing is remembered: a parabola from its dent back to depth zero."""
+    scene = impact(**SOLID)
+    law, bodies = laws.correspondence.law_of(scene, rule=rule), Bodies(scene.mass, scene.velocity, gravity)
+    assert law.time_scale(bodies) == scene.elastic_contact_time
+    speed, dent = 0.4 * scene.velocity, 0.02 * scene.velocity * scene.elastic_contact_time
+    last = State(dent, -speed, 0.0, (float(law.load.load(dent)),))
+    met = law.returned(bodies, last)
+    assert met is not None
+    time, there = met
+    assert time == pytest.approx((speed + (speed**2 - 2.0 * gravity * dent) ** 0.5) / gravity, rel=1e-6)
+    assert there.rate == pytest.approx((speed**2 - 2.0 * gravity * dent) ** 0.5, rel=1e-6)
+    assert np.abs(there.memory).max() < 1e-6 * last.memory[0]
+    assert law.returned(Bodies(scene.mass, scene.velocity, 0.0), last) is None
+    assert law.returned(Bodies(scene.mass, scene.velocity, -gravity), last) is None
+
+
+def test_every_contact_is_damped_by_its_own_speed() -> None:
+    """A law whose damping goes with the inverse of the speed at touch gives back the same share each time."""
+    law = LawChoice("hertzdamp", {"k": 1e9, "e": 0.6})
+    scene = Scene(None, 1.0, 2.0, law=law, model=Model(gravity=0.1), motion=Motion(impacts=3, end_time=1e3))
+    contacts = simulate(laws.hertzdamp.of(scene), scene, 1e-4).contacts
+    for number, one in enumerate(contacts):
+        assert one["velocity"] == pytest.approx(2.0 * 0.6**number, rel=1e-4)
+        assert one["restitution"] == pytest.approx(0.6, rel=1e-4)
+    assert len(contacts) == 3
 
 
 def test_tension_to_depth_zero_as_published(impact: Build, unit_time: float) -> None:
