@@ -18,7 +18,7 @@ from scipy.special import beta
 from lumped import Model, Motion, Quantity, Scene, laws, simulate
 from lumped.indentation import FiniteSize, power_law
 from lumped.laws import _force_law, _hereditary
-from lumped.laws._assembly import AROUND, BENDS, Answer, bars
+from lumped.laws._assembly import AROUND, BENDS, Answer, _NearPeak, bars, impulse_of, values_of
 from lumped.numbers import Array
 from lumped.result.history import AT_REST, End
 from lumped.result.result import UNITS, meets
@@ -444,6 +444,55 @@ def test_bars_are_a_safety_times_what_two_integrations_differ_by(safety: float, 
     assert errors["impulse"] == pytest.approx(safety * 5.0 * least, rel=1e-12)
     assert found["duration"] == Quantity(None, None, "s")
     assert {name: quantity.value for name, quantity in found.items()} == {"history_l2": 0.0, **fine}
+
+
+def test_how_a_force_bends_is_asked_for_between_the_rows_around_its_peak() -> None:
+    """Two of its own rows on either side, or as many as there are; nowhere before the touch and after the end."""
+    rows, values = np.linspace(0.0, 2.0, 41), dict.fromkeys(UNITS, 1.0)
+    for peak, low, high in ((1.0, 0.9, 1.1), (0.06, 0.0, 0.2), (1.98, 1.9, 2.0)):
+        answer = Answer(rows, Pushed(0.0, []), {**values, "peak_time": peak}, End.SEPARATED)
+        near = _NearPeak.of(answer)
+        assert near.places[: AROUND.size] == pytest.approx(np.linspace(low, high, AROUND.size), abs=1e-12)
+        before, after = near.places[AROUND.size :].reshape(2, -1)
+        assert before == pytest.approx(np.maximum(peak - np.append(near.reaches, 0.0), 0.0))
+        assert after == pytest.approx(np.minimum(peak + np.append(near.reaches, 0.0), 2.0))
+        assert (near.whole, near.width) == pytest.approx((2.0, high - low))
+        assert near.reaches[0] == 2.0
+        assert near.reaches[-1] < 1e-8 * peak
+        assert near.reaches[1:] == pytest.approx(0.8 * near.reaches[:-1])
+    for peak in (0.0, 2.0):
+        assert not _NearPeak.of(Answer(rows, Pushed(0.0, []), {**values, "peak_time": peak}, End.SEPARATED)).places.size
+
+
+def test_a_result_tells_its_bars_as_they_are_ruled() -> None:
+    """Of forces, times and depths over the value, of a restitution and of the history as they are."""
+    scene = impact(np.random.default_rng(3), "hertz", alpha=1.5)
+    found = simulate(laws.hertz.of(scene), scene, 1e-4)
+    bars_of = found.error_budget_by_quantity["integration"]
+    force = found.quantities["peak_force"].value or 0.0
+    assert found.error_budget["integration"] == pytest.approx(found.history.force_error[0] / force, rel=1e-12)
+    assert set(bars_of) == set(UNITS)
+    for name, quantity in found.quantities.items():
+        relative = name in ("peak_force", "peak_depth", "peak_time", "duration", "impulse")
+        unit = abs(quantity.value or 0.0) if relative else 1.0
+        assert bars_of[name] == pytest.approx((quantity.error or 0.0) / unit, rel=1e-12, abs=0.0)
+    rows = [simulate(laws.hertz.of(scene), scene, tolerance).history.time.size for tolerance in (1e-2, 1e-6)]
+    assert 200 < rows[0] < 500 < rows[1], "as dense as the tolerance asks for"
+
+
+def test_an_impulse_is_the_momentum_lost_and_what_gravity_gave_meanwhile() -> None:
+    scene = Scene(None, 2.0, 3.0, law=LawChoice("hertz", {"k": 1e5}), model=Model(gravity=10.0))
+    assert impulse_of(scene, End.SEPARATED, -1.5, 0.25, 9.0) == pytest.approx(2.0 * (3.0 + 1.5 + 10.0 * 0.25))
+    assert impulse_of(scene, End.TIME, 0.5, 0.25, 9.0) == pytest.approx(2.0 * (3.0 - 0.5 + 10.0 * 0.25))
+    assert impulse_of(scene, End.REST, 1e-9, 0.25, 9.0) == pytest.approx(2.0 * (3.0 + 10.0 * 9.0)), (
+        "its weight is borne"
+    )
+    assert impulse_of(scene, End.SECOND_APPROACH, -1.5, 0.25, 9.0) is None
+    values = values_of(scene, End.SEPARATED, (0.1, 7.0), 0.02, -1.5, 0.25)
+    exact = {"peak_force": 7.0, "peak_time": 0.1, "peak_depth": 0.02, "duration": 0.25, "restitution": 0.5}
+    assert values == pytest.approx({**exact, "impulse": 2.0 * (4.5 + 2.5)})
+    other = values_of(scene, End.TIME, (0.1, 7.0), 0.02, 0.5, 0.25)
+    assert (other["duration"], other["restitution"]) == (None, None)
 
 
 @pytest.mark.parametrize("asked", [1e-5, 1e-9, 1e-10, 1e-12, 1e-20])
