@@ -88,6 +88,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/plastic/impact.py", "PILOT", ""): BEGINS,
     ("fe_contact/plastic/impact.py", "PILOT_FIRST", ""): BEGINS,
     ("fe_contact/plastic/impact.py", "MOST_PILOT", ""): WORK,
+    ("fe_contact/plastic/impact.py", "Rebound.march", "1 -> 0"): WORK,
     ("fe_contact/budget/plan.py", "scales", "if grows_once"): BEGINS,
     ("fe_contact/budget/runs.py", "PLACED", ""): BEGINS,
     ("fe_contact/budget/runs.py", "Runs._piloted", ""): BEGINS,

@@ -15,13 +15,14 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import beta
 
-from lumped import Model, Motion, Quantity, Scene, laws, simulate
-from lumped.indentation import FiniteSize, power_law
+from lumped import Material, Model, Motion, Quantity, Relaxation, Scene, Sphere, laws, simulate
+from lumped.indentation import FiniteSize, indent, power_law
 from lumped.laws import _force_law, _hereditary
 from lumped.laws._assembly import AROUND, BENDS, Answer, _NearPeak, bars, impulse_of, values_of
 from lumped.numbers import Array
 from lumped.result.history import AT_REST, End
 from lumped.result.result import UNITS, meets
+from lumped.scene.indenter import Indenter
 from lumped.scene.tables import LawChoice
 from lumped.solvers.point import half_widths
 from lumped.solvers.point.bodies import Bodies, Stage, State, Step
@@ -325,6 +326,29 @@ def test_the_bars_of_what_finite_spheres_add_hold_whatever_the_signs_of_the_erro
         assert slope.value - slope.error <= middle.min() <= middle.max() <= slope.value + slope.error
     for name, ratios in off.items():
         assert max(ratios) == pytest.approx(1.0), name
+
+
+def test_a_slow_indentation_is_hertz_s_and_tells_what_it_missed() -> None:
+    """4/3 E* R^(1/2) d^(3/2), by the modulus that is left or that of an instant, whatever the order of its depths."""
+    indenter = Indenter(Sphere(0.01), Material(Relaxation(1e6, (3e6,), (0.1,)), 0.3))
+    depths = (2e-5, 1e-5, 4e-5)
+    for instant, young in ((False, 1e6), (True, 4e6)):
+        found = indent(indenter, depths, "hertz", instant, tolerance=1e-6)
+        exact = 4.0 / 3.0 * 0.1 * np.array(depths) ** 1.5
+        assert found.modulus == pytest.approx(young / 0.91, rel=1e-12)
+        assert found.force == pytest.approx(found.modulus * exact, rel=1e-12, abs=0.0)
+        assert found.contact_radius == pytest.approx(np.sqrt(0.01 * np.array(depths)), rel=1e-12, abs=0.0)
+        law = {name: quantity.value for name, quantity in found.quantities.items()}
+        assert law == pytest.approx({"alpha": 1.5, "D": 4.0 / 30.0, "D_at_alpha": 4.0 / 30.0}, rel=1e-9)
+        assert (found.converged, found.message, found.finite_size) == (True, "", None)
+    poor = replace(found, force_error=np.array([1e-9, 2e-6, 1e-9]) * found.force)
+    assert not poor.converged
+    assert poor.message == "tolerance 1e-06 not reached: force to 2e-06"
+    assert replace(poor, tolerance=3e-6).converged
+    assert indent(indenter, (1e-5, 2e-5, 1e-5), "hertz").quantities == {}, "three depths tell a law"
+    deepest = indent(indenter, (4e-5,), "hertz", True, tolerance=1e-6)
+    assert found.model_ledger == deepest.model_ledger
+    assert found.model_ledger != indent(indenter, (1e-5,), "hertz", True, tolerance=1e-6).model_ledger
 
 
 @pytest.mark.parametrize("name", ["peak_force", "restitution"])
