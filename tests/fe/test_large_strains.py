@@ -384,6 +384,102 @@ def test_strains_may_be_large_halfway_from_the_contact_to_the_end() -> None:
     assert _core(body).tolist() == [0, 1, 2, 3, 4, 5], "up to 6 of 10: the middles are a third of a side on"
 
 
+@dataclass(frozen=True)
+class Way:
+    """An equilibrium at a ``depth``, of a row of points touched up to 1, or from there to ``first``."""
+
+    depth: float
+    iterations: int = 1
+    ends: bool = False
+    first: float = -1.0
+
+    @property
+    def balance(self) -> Any:
+        along = np.linspace(-4.0, 4.0, 33)
+        touching = (along >= self.first) & (along <= 1.0)
+        touch = SimpleNamespace(skin=SimpleNamespace(place=along), touching=touching)
+        encounter = SimpleNamespace(obstacle=SimpleNamespace(along=lambda place: place))
+        return SimpleNamespace(depth=self.depth, touch=touch, encounter=encounter)
+
+    def predicted(self, depth: float) -> float:
+        return depth
+
+    def foreseen(self, depth: float) -> float:
+        return 10.0 * depth
+
+    def elliptic(self, depth: float) -> bool:
+        return not self.ends
+
+
+def gone(
+    monkeypatch: pytest.MonkeyPatch, start: Way, depth: float, longest: float = 2.0
+) -> tuple[Way, list[tuple[float, bool]]]:
+    """How a way to a ``depth`` ends, and at which depths, hastily or not, it was tried, of which none may be further
+    than ``longest`` from the one before.
+    """
+    here, tried = [start], list[tuple[float, bool]]()
+
+    def balance(
+        encounter: object, displacement: float, deep: float, stiffness: float, state: object, **named: Any
+    ) -> Way:
+        assert (displacement, named["foreseen"], stiffness, state) == (deep, 10.0 * deep, 7.0, ("what is remembered",))
+        assert np.array_equal(named["touching"], pressing._touching(here[-1], deep, 0.5))  # type: ignore[arg-type]  # stands for one
+        tried.append((deep, named["hasty"]))
+        if max(deep / here[-1].depth, here[-1].depth / deep) > longest * (1.0 + 1e-9):
+            raise EquilibriumLost("too far")
+        here.append(replace(here[-1], depth=deep, iterations=3))
+        return here[-1]
+
+    monkeypatch.setattr(pressing, "balanced", balance)
+    encounter, state = object(), ("what is remembered",)
+    found: Any = advanced(encounter, start, depth, 7.0, 0.5, state)  # type: ignore[arg-type]  # stands for one
+    return found, tried
+
+
+@pytest.mark.parametrize(
+    ("start", "depth", "ways"),
+    [(1.0, 8.0, [2.0, 4.0, 8.0]), (1.0, 1.5, [1.5]), (8.0, 1.0, [4.0, 2.0, 1.0]),
+     (1.0, 81.0, 81.0 ** (np.arange(1, 8) / 7))],
+)  # fmt: skip
+def test_a_way_is_made_in_even_parts_of_twice_the_depth_at_most(
+    start: float, depth: float, ways: list[float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found, tried = gone(monkeypatch, Way(start), depth)
+    assert [deep for deep, _ in tried] == pytest.approx(list(ways), rel=1e-12)
+    assert found.depth == pytest.approx(depth, rel=1e-12)
+    assert found.iterations == 3 * len(ways)
+    assert all(hasty for _, hasty in tried)
+
+
+def test_a_part_of_a_way_that_is_lost_is_made_in_halves_until_it_is_as_good_as_none(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """In logarithms of the depth; where it ends though it is 2 % long, waves of the material say why."""
+    found, tried = gone(monkeypatch, Way(1.0), 1.9, longest=1.5)
+    assert [deep for deep, _ in tried] == pytest.approx([1.9, 1.9**0.5, 1.9], rel=1e-12)
+    assert found.depth == 1.9
+    for start, error in ((Way(1.0), "too far"), (Way(1.0, ends=True), "strains gather in bands")):
+        with pytest.raises(EquilibriumLost, match=error) as lost:
+            gone(monkeypatch, start, 1.9, longest=1.0)
+        assert isinstance(lost.value, BeyondRange) is start.ends
+
+
+def test_points_that_will_touch_are_those_of_a_contact_so_much_wider() -> None:
+    """As a power of the depth, on both sides of where it begins or on one."""
+    along = np.linspace(-4.0, 4.0, 33)
+    for first, low, high in ((-1.0, -3.0, 3.0), (-0.5, -1.5, 3.0), (0.5, 0.0, 3.0)):
+        touching = pressing._touching(Way(1.0, first=first), 9.0, 0.5)  # type: ignore[arg-type]  # stands for one
+        assert np.array_equal(touching, (along >= low) & (along <= high))
+    fewer = pressing._touching(Way(9.0), 1.0, 1.0)  # type: ignore[arg-type]  # stands for one
+    assert np.array_equal(fewer, np.abs(along) <= 1.0 / 9.0)
+
+
+def test_the_power_by_which_contacts_widen_is_that_of_the_smallest_and_the_largest() -> None:
+    depth = np.array([3.0, 1.0, 8.0])
+    assert pressing._widening(depth, 5.0 * depth**0.7) == pytest.approx(0.7, rel=1e-12)
+    assert pressing._widening(depth[:1], depth[:1]) == 0.5, "of a sphere, where one alone tells nothing"
+
+
 @dataclass
 class Sprung:
     """A spring at a displacement, with a ``base`` of energy; ``gains``: over Newton's step that by a model of the body,
