@@ -254,6 +254,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
         "if not fixed and",
     ): "of a target that there is not: none is without both",
     # bounds and examples of files
+    ("lumped/paper/table1.py", "LAYER", ""): "the datum that a study takes where a table names none",
     ("lumped/paper/table1.py", "ROWS", ""): "the body that a study takes where a file names none",
     # the same but for rounding, or a bar that is wider and never narrower
     ("fe_contact/waves/line.py", "_largest", "2.0 "): "how far beside a row, in rounding",
