@@ -338,6 +338,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/plastic/path.py", "Presser._released", "0.05 ->"): GUESS,
     ("lumped/solvers/hereditary/rebound.py", "rebound", "0 -> "): WORK,
     ("lumped/result/history.py", "densified", "0 -> "): WORK,
+    ("lumped/result/history.py", "densified", "1.0 -> 0.1"): WORK,
     ("fe_contact/indentation.py", "Indenting.certified", "2.0 -> "): WORK,
     ("fe_contact/plastic/course.py", "_spread", "1 -> 2"): WORK,
     ("fe_contact/plastic/course.py", "_spread", "1 -> 0"): "of depths that are one: no two are asked for as near",

@@ -191,6 +191,22 @@ def test_a_force_that_ends_upright_is_known_to_its_end() -> None:
         assert history.force_error.max() <= 1e-3 * history.force.max(), alpha
 
 
+@pytest.mark.parametrize("alpha", [0.5, 1.5, 2.5])
+def test_rows_lie_ever_more_densely_towards_both_ends_of_a_force_that_is_a_root_there(alpha: float) -> None:
+    """Half as far away in the root in which it is smooth, down to rounding; and at the ends of all steps."""
+    scene = impact(np.random.default_rng(8), "hertz", alpha=alpha)
+    law = laws.hertz.of(scene)
+    track = _force_law._track(law, scene, 1, 1e-5)
+    power, end = law.grading(Stage(True, 0.0, scene.velocity)), track.times[-1]
+    assert power > 1
+    assert set(track.times) <= set(track.rows)
+    near = track.rows[1:10]
+    assert near[0] < 1e-25 * end
+    assert near[1:] / near[:-1] == pytest.approx(2.0**power, rel=1e-9)
+    left = end - track.rows  # of which rounding of the time leaves few digits
+    assert 3 <= np.count_nonzero((left > 1e-12 * end) & (left < 1e-6 * end)) < 25
+
+
 def test_slopes_at_the_nodes_of_a_step_are_those_of_polynomials() -> None:
     """The time of a peak errs by the slope of what the force lacks, over the curvature of the force."""
     x = half_widths.NODES.places
@@ -473,7 +489,7 @@ def test_bars_are_a_safety_times_what_two_integrations_differ_by(safety: float, 
 def test_how_a_force_bends_is_asked_for_between_the_rows_around_its_peak() -> None:
     """Two of its own rows on either side, or as many as there are; nowhere before the touch and after the end."""
     rows, values = np.linspace(0.0, 2.0, 41), dict.fromkeys(UNITS, 1.0)
-    for peak, low, high in ((1.0, 0.9, 1.1), (0.06, 0.0, 0.2), (1.98, 1.9, 2.0)):
+    for peak, low, high in ((1.0, 0.9, 1.1), (0.06, 0.0, 0.2), (0.02, 0.0, 0.15), (1.98, 1.9, 2.0)):
         answer = Answer(rows, Pushed(0.0, []), {**values, "peak_time": peak}, End.SEPARATED)
         near = _NearPeak.of(answer)
         assert near.places[: AROUND.size] == pytest.approx(np.linspace(low, high, AROUND.size), abs=1e-12)
