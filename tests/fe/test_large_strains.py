@@ -24,7 +24,7 @@ from fe_contact.solids import pressing
 from fe_contact.solids.base import PointAnswer, State, elliptic
 from fe_contact.solids.block import press as press_block
 from fe_contact.solids.bulk import Bulk, Pattern
-from fe_contact.solids.contact import OnDeformed, OnRound, OnUndeformed
+from fe_contact.solids.contact import Obstacle, OnDeformed, OnRound, OnTop, OnUndeformed, Skin, flat_places
 from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.newton import (
     BeyondRange,
@@ -384,6 +384,44 @@ def test_strains_may_be_large_halfway_from_the_contact_to_the_end() -> None:
     assert _core(body).tolist() == [0, 1, 2, 3, 4, 5], "up to 6 of 10: the middles are a third of a side on"
 
 
+@pytest.mark.parametrize(
+    "obstacle", [OnRound(1.5), OnDeformed(Sphere(2.0), 0.5), OnTop(0.2), OnUndeformed(Sphere(2.0), 0.5)]
+)
+def test_forces_of_a_touch_and_their_tangents_are_slopes_of_its_energy(obstacle: Obstacle) -> None:
+    """Of one facet on both sides of the axis, by its displacement and by the depth; convex are its springs."""
+    gauss, weights = np.polynomial.legendre.leggauss(3)
+    share = 0.5 * (gauss + 1.0)
+    place, trace = flat_places(np.array([-0.3 + 0.8 * share])), np.stack([1.0 - share, share], axis=1)
+    skin, random = Skin(place, np.array([0.4 * weights]), trace, np.arange(4)[None], 4), np.random.default_rng(2)
+    whole, deep, small = 0.05 * random.normal(size=4), 0.4, 1e-5
+
+    def touched(moved: Array, depth: float = deep) -> Any:
+        return skin.pressed(moved, obstacle, depth, 7.0, np.ones((1, 3), dtype=bool))
+
+    def slopes(of: Callable[[Any], Any]) -> Array:
+        steps = small * np.eye(4)
+        return np.array([(of(touched(whole + s)) - of(touched(whole - s))) / (2.0 * small) for s in steps])
+
+    here, ends = touched(whole), (touched(whole, deep + small), touched(whole, deep - small))
+    assert here.energy == pytest.approx(3.5 * float(np.vdot(skin.weights, here.overlap.depth**2)), rel=1e-12)
+    assert here.forces == pytest.approx(slopes(lambda touch: touch.energy), rel=1e-5, abs=1e-7)
+    assert here.force == pytest.approx((ends[0].energy - ends[1].energy) / (2.0 * small), rel=1e-6)
+    assert here.stiffening == pytest.approx((ends[0].forces - ends[1].forces) / (2.0 * small), rel=1e-5, abs=1e-6)
+    assert here.matrices()[0] == pytest.approx(slopes(lambda touch: touch.forces), rel=1e-4, abs=1e-5)
+    functions = np.stack([here.overlap.normal[c, 0, :, None] * trace for c in (0, 1)], axis=2).reshape(3, 4)
+    springs = 7.0 * functions.T @ (skin.weights[0][:, None] * functions)
+    assert here.matrices(convex=True)[0] == pytest.approx(springs, rel=1e-12, abs=1e-12)
+
+
+def test_a_plane_upon_a_ring_meets_its_top_and_places_are_told_from_the_axis() -> None:
+    ring, where = OnTop(3.0), np.array([[3.0, 2.5, -1.0], [0.0, -0.2, 0.1]])
+    assert ring.place(np.array([0.0, 0.5 * np.pi, -0.5 * np.pi])) == pytest.approx(np.array([[3, 4, 2], [0, -1, -1]]))
+    assert ring.overlap(where, 0.5 * where, 0.25).depth == pytest.approx([0.25, -0.05, 0.4])
+    assert ring.along(where) == pytest.approx([0.0, -0.5, -4.0])
+    for profiled in (OnDeformed(Sphere(2.0), 0.5), OnUndeformed(Sphere(2.0), 0.5)):
+        assert profiled.along(where) == pytest.approx([3.0, 2.5, -1.0])
+
+
 @dataclass(frozen=True)
 class Way:
     """An equilibrium at a ``depth``, of a row of points touched up to 1, or from there to ``first``."""
@@ -455,9 +493,9 @@ def test_a_part_of_a_way_that_is_lost_is_made_in_halves_until_it_is_as_good_as_n
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """In logarithms of the depth; where it ends though it is 2 % long, waves of the material say why."""
-    found, tried = gone(monkeypatch, Way(1.0), 1.9, longest=1.5)
-    assert [deep for deep, _ in tried] == pytest.approx([1.9, 1.9**0.5, 1.9], rel=1e-12)
-    assert found.depth == 1.9
+    found, tried = gone(monkeypatch, Way(2.0), 3.8, longest=1.5)
+    assert [deep for deep, _ in tried] == pytest.approx([3.8, 7.6**0.5, 3.8], rel=1e-12)
+    assert found.depth == 3.8
     for start, error in ((Way(1.0), "too far"), (Way(1.0, ends=True), "strains gather in bands")):
         with pytest.raises(EquilibriumLost, match=error) as lost:
             gone(monkeypatch, start, 1.9, longest=1.0)
@@ -477,6 +515,7 @@ def test_points_that_will_touch_are_those_of_a_contact_so_much_wider() -> None:
 def test_the_power_by_which_contacts_widen_is_that_of_the_smallest_and_the_largest() -> None:
     depth = np.array([3.0, 1.0, 8.0])
     assert pressing._widening(depth, 5.0 * depth**0.7) == pytest.approx(0.7, rel=1e-12)
+    assert pressing._widening(np.array([1.0, 1.05]), np.array([1.0, 1.05**0.7])) == pytest.approx(0.7, rel=1e-9)
     assert pressing._widening(depth[:1], depth[:1]) == 0.5, "of a sphere, where one alone tells nothing"
 
 
