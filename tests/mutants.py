@@ -212,6 +212,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("lumped/laws/bar_waves.py", "EQUAL", ""): "below what any result is asked for",
     ("lumped/laws/bar_waves.py", "_answer", "fall.knots[1:] * (1.0 - BEFORE) ->"): WORK,
     ("lumped/laws/bar_waves.py", "_answer", "0.0 ->"): "of a peak that there is not: every contact has one",
+    ("lumped/solvers/hereditary/approach.py", "FAINT", "0.001 -> 0.0001"): WORK,
     ("lumped/solvers/hereditary/path.py", "Path._basis", "if len"): WORK,
     ("lumped/solvers/hereditary/rebound.py", "ReboundPieces._solved", "1 ->"): WORK,
     ("lumped/laws/bar_waves.py", "of", "0.0 -> 0.1"): "of a density that there is not: every bar has one",
