@@ -132,7 +132,7 @@ def _times_of_both(fine: Answer, coarse: Answer) -> Array:
 def _largest_and_norm(times: Array, force: Array, missed: Array) -> tuple[float, float]:
     """Largest difference of two forces over time, N, and its L2 norm over that of the force."""
     steps = np.diff(times)
-    weights = 0.5 * (np.append(steps, 0.0) + np.append(0.0, steps))  # of the trapezoidal rule
+    weights = np.append(steps, 0.0) + np.append(0.0, steps)  # of the trapezoidal rule, twice: of both norms
     norm = float(weights @ force**2)
     return float(np.abs(missed).max()), math.sqrt(float(weights @ missed**2) / norm) if norm else 0.0
 

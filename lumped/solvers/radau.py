@@ -76,8 +76,8 @@ def radau(count: int) -> Nodes:
     difference = np.zeros(count + 1)
     difference[-1], difference[-2] = 1.0, -1.0
     zeros = np.sort(np.real(legendre.legroots(difference)))  # all of them real; complex numbers from numpy 2.5 on
-    for _ in range(2):  # the eigenvalues behind the roots leave a few last digits
-        zeros -= legendre.legval(zeros, difference) / legendre.legval(zeros, legendre.legder(difference))
+    # the eigenvalues behind the roots leave a few last digits
+    zeros -= legendre.legval(zeros, difference) / legendre.legval(zeros, legendre.legder(difference))
     zeros[-1] = 1.0
     series = np.array(np.linalg.inv(legendre.legvander(zeros, count - 1)), dtype=float)
     # d/dx of the series in x in [-1, 1] is twice that over the step's share in [0, 1]

@@ -6,10 +6,12 @@ import math
 
 import numpy as np
 import pytest
+from skfem import CellBasis, ElementDG, ElementTriP0, ElementTriP1, ElementTriP2, MeshTri
 
 from fe_contact.assembly.forms import Array
 from fe_contact.plastic.course import Course, PlasticLoading, settings
 from fe_contact.plastic.ground import CORE, Ground
+from fe_contact.plastic.growing import upwind
 from fe_contact.plastic.path import PlasticZoneWide, Presser, Station
 from fe_contact.solids.base import State
 from lumped import Scene
@@ -77,6 +79,29 @@ def test_what_is_alike_everywhere_stays_so_far_from_where_nothing_flows_in(order
     within = np.hypot(*place) < 1.5
     assert strain[:, within] == pytest.approx(1.0, abs=1e-4)
     assert amount[within] == pytest.approx(1.0, abs=1e-4)
+
+
+@pytest.mark.parametrize("order", [1, 2, 3])
+def test_the_rate_of_what_flows_is_its_slope_outwards_but_where_nothing_flows_in(order: int) -> None:
+    """x . grad a of polynomials, exactly, on a box that the flow enters by two sides and leaves by the other two."""
+    mesh = MeshTri.init_tensor(np.linspace(1.0, 2.0, 4), np.linspace(-2.0, -1.0, 4))
+    broken = ElementDG([ElementTriP0, ElementTriP1, ElementTriP2][order - 1]())
+    basis = CellBasis(mesh, broken)
+    (r, z), corners = basis.doflocs, mesh.p[:, mesh.t]
+    entered = np.isclose(corners[0], 2.0).sum(axis=0) + np.isclose(corners[1], -2.0).sum(axis=0) > 1
+    assert 0 < np.count_nonzero(entered) < mesh.nelements
+    a, slope = {
+        1: (np.ones_like(r), np.zeros_like(r)),
+        2: (1.0 + 2.0 * r - z, 2.0 * r - z),
+        3: (r * z + 3.0 * z**2, 2.0 * r * z + 6.0 * z**2),
+    }[order]
+    rate = upwind(mesh, broken) @ a
+    inside = basis.element_dofs[:, ~entered]
+    assert rate[inside] == pytest.approx(slope[inside], abs=1e-10)
+    assert not np.allclose(rate, slope), "what flows in is nothing"
+    lost = basis.interpolate(upwind(mesh, broken) @ basis.project(1.0))
+    total = float(np.sum(np.asarray(lost) * basis.dx))
+    assert total == pytest.approx(-4.0, abs=1e-10), "one by each of two sides, and twice the area by shrinking"
 
 
 def test_two_growths_are_their_product_and_none_is_the_same() -> None:

@@ -14,9 +14,10 @@ from fe_contact import indentation
 from fe_contact.bodies.pressing import PressedDepths
 from fe_contact.errors import BodyTooThin, ContactTooWide
 from fe_contact.indentation import CAUSES, FEWEST, Indenting, _accompanied, indent, press, settings
-from fe_contact.settings import Numerics
+from fe_contact.settings import Numerics, tolerance_of
 from lumped import BadInput, Material, Relaxation
 from lumped.indentation import Indentation
+from lumped.indentation import indent as by_load_curve
 from lumped.scene.indenter import Indenter
 from lumped.shapes import SHAPES, Shape, Sphere
 from lumped.shapes.punch import Punch
@@ -396,3 +397,11 @@ def test_forces_are_pressed_finer_until_all_bars_together_meet_the_tolerance() -
             assert finer.elements_per_contact > numerics.elements_per_contact
             assert finer.penalty > numerics.penalty
             assert finer.far_radius == numerics.far_radius
+
+
+def test_every_method_is_asked_for_the_same_where_nothing_is_asked() -> None:
+    """A tolerance of 1e-3, by finite elements as by a load curve, which meets it."""
+    indenter = Indenter(Sphere(0.01), Material(Relaxation(1e6), 0.3))
+    exact = by_load_curve(indenter, (1e-5,), "mdr")
+    assert exact.tolerance == tolerance_of({}) == 1e-3
+    assert exact.converged

@@ -24,10 +24,18 @@ from fe_contact.solids import pressing
 from fe_contact.solids.base import PointAnswer, State, elliptic
 from fe_contact.solids.block import press as press_block
 from fe_contact.solids.bulk import Bulk, Pattern
-from fe_contact.solids.contact import OnDeformed, OnRound, OnUndeformed
+from fe_contact.solids.contact import Obstacle, OnDeformed, OnRound, OnTop, OnUndeformed, Skin, flat_places
 from fe_contact.solids.finite import Hyperelastic
-from fe_contact.solids.newton import BeyondRange, Encounter, Equilibrium, EquilibriumLost, _descended, balanced
-from fe_contact.solids.pressing import Reached, Solid, advanced, press
+from fe_contact.solids.newton import (
+    BeyondRange,
+    Encounter,
+    Equilibrium,
+    EquilibriumLost,
+    _descended,
+    _descending,
+    balanced,
+)
+from fe_contact.solids.pressing import Reached, Solid, _core, _together, advanced, press
 from fe_contact.solids.rolled import Rolled
 from lumped import BadInput, Scene, laws
 from lumped.indentation import Indentation
@@ -409,6 +417,216 @@ def test_iterations_from_rest_to_a_depth_are_those_of_all_its_equilibria(monkeyp
     assert advanced(body.encounter, first, 0.2 / body.unit, 500.0).iterations == sum(counted) > len(counted) > 1
 
 
+def test_one_mesh_serves_depths_of_about_one_size_under_a_tip_and_all_of_them_elsewhere() -> None:
+    """Up to twice the smallest of each mesh, whatever the order they are asked for in."""
+    depth = np.array([4.1, 1.0, 2.0, 2.1, 1.7, 4.2, 8.5])
+    assert _together(Cone(20.0), depth) == [[1, 4, 2], [3, 0, 5], [6]]
+    assert _together(Sphere(1.0), depth) == [[1, 4, 2, 3, 0, 5, 6]]
+
+
+def test_strains_may_be_large_halfway_from_the_contact_to_the_end() -> None:
+    """Of small triangles in a row those whose middles are no farther."""
+    corners = np.arange(11.0)
+    points = np.array([np.repeat(corners, 2), np.tile([0.0, -1e-3], 11)])
+    triangles = np.array([[2 * i, 2 * i + 1, 2 * i + 2] for i in range(10)]).T
+    mesh, surface = SimpleNamespace(p=points, t=triangles), SimpleNamespace(zone=2.0)
+    body: Any = SimpleNamespace(basis=SimpleNamespace(mesh=mesh), surface=surface)
+    assert _core(body).tolist() == [0, 1, 2, 3, 4, 5], "up to 6 of 10: the middles are a third of a side on"
+
+
+@pytest.mark.parametrize(
+    "obstacle", [OnRound(1.5), OnDeformed(Sphere(2.0), 0.5), OnTop(0.2), OnUndeformed(Sphere(2.0), 0.5)]
+)
+def test_forces_of_a_touch_and_their_tangents_are_slopes_of_its_energy(obstacle: Obstacle) -> None:
+    """Of one facet on both sides of the axis, by its displacement and by the depth; convex are its springs."""
+    gauss, weights = np.polynomial.legendre.leggauss(3)
+    share = 0.5 * (gauss + 1.0)
+    place, trace = flat_places(np.array([-0.3 + 0.8 * share])), np.stack([1.0 - share, share], axis=1)
+    skin, random = Skin(place, np.array([0.4 * weights]), trace, np.arange(4)[None], 4), np.random.default_rng(2)
+    whole, deep, small = 0.05 * random.normal(size=4), 0.4, 1e-5
+
+    def touched(moved: Array, depth: float = deep) -> Any:
+        return skin.pressed(moved, obstacle, depth, 7.0, np.ones((1, 3), dtype=bool))
+
+    def slopes(of: Callable[[Any], Any]) -> Array:
+        steps = small * np.eye(4)
+        return np.array([(of(touched(whole + s)) - of(touched(whole - s))) / (2.0 * small) for s in steps])
+
+    here, ends = touched(whole), (touched(whole, deep + small), touched(whole, deep - small))
+    assert here.energy == pytest.approx(3.5 * float(np.vdot(skin.weights, here.overlap.depth**2)), rel=1e-12)
+    assert here.forces == pytest.approx(slopes(lambda touch: touch.energy), rel=1e-5, abs=1e-7)
+    assert here.force == pytest.approx((ends[0].energy - ends[1].energy) / (2.0 * small), rel=1e-6)
+    assert here.stiffening == pytest.approx((ends[0].forces - ends[1].forces) / (2.0 * small), rel=1e-5, abs=1e-6)
+    assert here.matrices()[0] == pytest.approx(slopes(lambda touch: touch.forces), rel=1e-4, abs=1e-5)
+    functions = np.stack([here.overlap.normal[c, 0, :, None] * trace for c in (0, 1)], axis=2).reshape(3, 4)
+    springs = 7.0 * functions.T @ (skin.weights[0][:, None] * functions)
+    assert here.matrices(convex=True)[0] == pytest.approx(springs, rel=1e-12, abs=1e-12)
+
+
+def test_a_plane_upon_a_ring_meets_its_top_and_places_are_told_from_the_axis() -> None:
+    ring, where = OnTop(3.0), np.array([[3.0, 2.5, -1.0], [0.0, -0.2, 0.1]])
+    assert ring.place(np.array([0.0, 0.5 * np.pi, -0.5 * np.pi])) == pytest.approx(np.array([[3, 4, 2], [0, -1, -1]]))
+    assert ring.overlap(where, 0.5 * where, 0.25).depth == pytest.approx([0.25, -0.05, 0.4])
+    assert ring.along(where) == pytest.approx([0.0, -0.5, -4.0])
+    for profiled in (OnDeformed(Sphere(2.0), 0.5), OnUndeformed(Sphere(2.0), 0.5)):
+        assert profiled.along(where) == pytest.approx([3.0, 2.5, -1.0])
+
+
+@dataclass(frozen=True)
+class Way:
+    """An equilibrium at a ``depth``, of a row of points touched up to 1, or from there to ``first``."""
+
+    depth: float
+    iterations: int = 1
+    ends: bool = False
+    first: float = -1.0
+
+    @property
+    def balance(self) -> Any:
+        along = np.linspace(-4.0, 4.0, 33)
+        touching = (along >= self.first) & (along <= 1.0)
+        touch = SimpleNamespace(skin=SimpleNamespace(place=along), touching=touching)
+        encounter = SimpleNamespace(obstacle=SimpleNamespace(along=lambda place: place))
+        return SimpleNamespace(depth=self.depth, touch=touch, encounter=encounter)
+
+    def predicted(self, depth: float) -> float:
+        return depth
+
+    def foreseen(self, depth: float) -> float:
+        return 10.0 * depth
+
+    def elliptic(self, depth: float) -> bool:
+        return not self.ends
+
+
+def gone(
+    monkeypatch: pytest.MonkeyPatch, start: Way, depth: float, longest: float = 2.0
+) -> tuple[Way, list[tuple[float, bool]]]:
+    """How a way to a ``depth`` ends, and at which depths, hastily or not, it was tried, of which none may be further
+    than ``longest`` from the one before.
+    """
+    here, tried = [start], list[tuple[float, bool]]()
+
+    def balance(
+        encounter: object, displacement: float, deep: float, stiffness: float, state: object, **named: Any
+    ) -> Way:
+        assert (displacement, named["foreseen"], stiffness, state) == (deep, 10.0 * deep, 7.0, ("what is remembered",))
+        assert np.array_equal(named["touching"], pressing._touching(here[-1], deep, 0.5))  # type: ignore[arg-type]  # stands for one
+        tried.append((deep, named["hasty"]))
+        if max(deep / here[-1].depth, here[-1].depth / deep) > longest * (1.0 + 1e-9):
+            raise EquilibriumLost("too far")
+        here.append(replace(here[-1], depth=deep, iterations=3))
+        return here[-1]
+
+    monkeypatch.setattr(pressing, "balanced", balance)
+    encounter, state = object(), ("what is remembered",)
+    found: Any = advanced(encounter, start, depth, 7.0, 0.5, state)  # type: ignore[arg-type]  # stands for one
+    return found, tried
+
+
+@pytest.mark.parametrize(
+    ("start", "depth", "ways"),
+    [(1.0, 8.0, [2.0, 4.0, 8.0]), (1.0, 1.5, [1.5]), (8.0, 1.0, [4.0, 2.0, 1.0]),
+     (1.0, 81.0, 81.0 ** (np.arange(1, 8) / 7))],
+)  # fmt: skip
+def test_a_way_is_made_in_even_parts_of_twice_the_depth_at_most(
+    start: float, depth: float, ways: list[float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found, tried = gone(monkeypatch, Way(start), depth)
+    assert [deep for deep, _ in tried] == pytest.approx(list(ways), rel=1e-12)
+    assert found.depth == pytest.approx(depth, rel=1e-12)
+    assert found.iterations == 3 * len(ways)
+    assert all(hasty for _, hasty in tried)
+
+
+def test_a_part_of_a_way_that_is_lost_is_made_in_halves_until_it_is_as_good_as_none(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """In logarithms of the depth; where it ends though it is 2 % long, waves of the material say why."""
+    found, tried = gone(monkeypatch, Way(2.0), 3.8, longest=1.5)
+    assert [deep for deep, _ in tried] == pytest.approx([3.8, 7.6**0.5, 3.8], rel=1e-12)
+    assert found.depth == 3.8
+    for start, error in ((Way(1.0), "too far"), (Way(1.0, ends=True), "strains gather in bands")):
+        with pytest.raises(EquilibriumLost, match=error) as lost:
+            gone(monkeypatch, start, 1.9, longest=1.0)
+        assert isinstance(lost.value, BeyondRange) is start.ends
+
+
+def test_points_that_will_touch_are_those_of_a_contact_so_much_wider() -> None:
+    """As a power of the depth, on both sides of where it begins or on one."""
+    along = np.linspace(-4.0, 4.0, 33)
+    for first, low, high in ((-1.0, -3.0, 3.0), (-0.5, -1.5, 3.0), (0.5, 0.0, 3.0)):
+        touching = pressing._touching(Way(1.0, first=first), 9.0, 0.5)  # type: ignore[arg-type]  # stands for one
+        assert np.array_equal(touching, (along >= low) & (along <= high))
+    fewer = pressing._touching(Way(9.0), 1.0, 1.0)  # type: ignore[arg-type]  # stands for one
+    assert np.array_equal(fewer, np.abs(along) <= 1.0 / 9.0)
+
+
+def test_the_power_by_which_contacts_widen_is_that_of_the_smallest_and_the_largest() -> None:
+    depth = np.array([3.0, 1.0, 8.0])
+    assert pressing._widening(depth, 5.0 * depth**0.7) == pytest.approx(0.7, rel=1e-12)
+    assert pressing._widening(np.array([1.0, 1.05]), np.array([1.0, 1.05**0.7])) == pytest.approx(0.7, rel=1e-9)
+    assert pressing._widening(depth[:1], depth[:1]) == 0.5, "of a sphere, where one alone tells nothing"
+
+
+@dataclass
+class Sprung:
+    """A spring at a displacement, with a ``base`` of energy; ``gains``: over Newton's step that by a model of the body,
+    convex or at rest, which is noted as ``asked`` with how many points are to touch.
+    """
+
+    place: float
+    gains: dict[tuple[bool, bool], float]
+    asked: list[tuple[bool, bool, int]]
+    base: float = 1.0
+    ends: float = np.inf
+
+    def __post_init__(self) -> None:
+        self.displacement = self.residual = np.array([self.place])
+        self.energy = self.base + 0.5 * self.place**2 if self.place <= self.ends else np.inf
+        self.touch: Any = SimpleNamespace(touching=abs(self.place) > 1e-3 * np.arange(3), stiffening=np.ones(1))
+        self.encounter: Any = SimpleNamespace(body=SimpleNamespace(free=np.array([0])))
+
+    def factors(self, convex: bool, unstrained: bool, meets: Array) -> Callable[[Array], Array]:
+        self.asked.append((convex, unstrained, int(np.count_nonzero(meets))))
+        return lambda load: self.gains[convex, unstrained] * load
+
+    def descending(self, settled: float) -> Equilibrium:
+        here: Any = self
+        at: Any = lambda place: replace(self, place=float(place[0]))  # noqa: E731  # where else it may be
+        return _descending(here, at, settled)
+
+
+def test_after_two_blunt_steps_a_body_is_taken_as_at_rest_and_what_they_meet_as_touching() -> None:
+    """Steps a thousand times too long lessen the energy where they are cut: they say that the tangent is no guide."""
+    asked = list[tuple[bool, bool, int]]()
+    found = Sprung(0.7, {(False, False): 1e3, (True, True): 1.0}, asked).descending(1e-9)
+    assert found.balance.displacement == pytest.approx([0.0], abs=1e-12)
+    assert asked == [(False, False, 0), (False, False, 3), (True, True, 3), (False, False, 0)]
+    assert found.iterations == 4
+
+
+@pytest.mark.parametrize("base", [1e-3, 1.0, 1e6])
+def test_descent_ends_where_a_step_changes_a_share_of_the_energy_and_takes_that_step_too(base: float) -> None:
+    """Each of half the way to where it rests: the slope promises half the square of what is left."""
+    asked, left, steps = list[tuple[bool, bool, int]](), 0.7, 1
+    while 0.5 * left**2 > 1e-6 * (base + 0.5 * left**2):
+        left, steps = 0.5 * left, steps + 1
+    found = Sprung(0.7, {(False, False): 0.5}, asked, base).descending(1e-6)
+    assert found.balance.displacement == pytest.approx([0.5 * left], rel=1e-12)
+    assert found.iterations == len(asked) == steps
+    assert found.rate == pytest.approx([-0.5]), "by the last tangent"
+
+
+def test_a_body_whose_energy_has_no_descent_is_lost_once_it_is_taken_as_at_rest() -> None:
+    """Towards a wall: by no step however short, at what it meets there neither."""
+    asked = list[tuple[bool, bool, int]]()
+    body = Sprung(-0.7, {(False, False): 1.0, (True, True): 1.0}, asked, ends=-0.7)
+    with pytest.raises(EquilibriumLost, match="no descent"):
+        body.descending(1e-9)
+    assert asked == [(False, False, 0), (False, False, 3), (True, True, 3)]
+
+
 def descended(energy: Callable[[float], float], slope: float, way: float = 0.3) -> float:
     """Where the line search leaves a body of one displacement, from 0.7 on, of the ``way`` that Newton's step goes."""
     free: Any = SimpleNamespace(body=SimpleNamespace(free=np.array([1])))
@@ -468,6 +686,26 @@ def test_st_venants_material_bears_waves_along_the_stress_down_to_a_stretch(stre
     gradient = np.array([0.0, 0.0, 0.0, stretch - 1.0, 0.0])[:, None]
     tangent = Hyperelastic(energy_of("st_venant_kirchhoff"), 1.0, 0.0).respond(gradient, ()).tangent
     assert elliptic(tangent) == (3.0 * stretch**2 > 1.0)
+
+
+def test_waves_are_borne_where_the_acoustic_tensor_of_every_direction_is_definite() -> None:
+    """Q_ik = C_ijkl N_j N_l of random tangents, a quarter of a degree apart; near to none it is left open."""
+    rng, angle = np.random.default_rng(5), np.linspace(0.0, np.pi, 720, endpoint=False)
+    direction = np.stack([np.cos(angle), np.sin(angle)])
+    found = list[bool]()
+    for _ in range(200):
+        half = rng.normal(size=(5, 5))
+        tangent = half + half.T + rng.uniform(0.0, 6.0) * np.eye(5)
+        acoustic = np.einsum("ijkl,jn,ln->nik", tangent[:4, :4].reshape(2, 2, 2, 2), direction, direction)
+        least = float(np.linalg.eigvalsh(acoustic).min())
+        if abs(least) > 0.3:
+            found.append(least > 0.0)
+            assert elliptic(tangent[:, :, None]) == found[-1]
+            sound = np.tile(2.0 * np.eye(5)[:, :, None, None], (1, 1, 3, 2))
+            assert elliptic(sound)
+            sound[:, :, 2, 1] = tangent
+            assert elliptic(sound) == found[-1], "one point is enough"
+    assert 30 < sum(found) < len(found) - 30
 
 
 @pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])

@@ -49,6 +49,7 @@ WHOLE = sum(CAMPAIGN.values())
 QUARTER = 1.75  # times as many elements and steps, for a quarter of the tolerance
 SCATTER = 0.05  # of Johnson's restitution, an asymptote of what hardly springs back
 ROUNDED = {"shape": "rounded_punch", "flat_radius": 0.01, "edge_radius": 0.01}
+COURSE = Course(Sphere(1.0), 0.3, 1.0, 1e-3, 0.0, first=0.01, firm=0.02, deepest=0.8)
 ABOUT = {"elements_per_contact": 8.0, "steps": 16, "tolerance": 0.01}
 
 
@@ -447,6 +448,49 @@ def test_a_body_is_too_fine_by_its_own_number_of_unknowns(order: int, monkeypatc
     monkeypatch.setattr(ground, "MOST_UNKNOWNS", int(0.9 * unknowns))
     with pytest.raises(BodyTooFine, match="accepted up to"):
         ground._basis(mesh, order)
+
+
+@pytest.mark.parametrize("order", [2, 3])
+def test_a_body_that_yields_has_no_more_points_than_its_degree_asks_for(order: int) -> None:
+    """Exact up to the power 2 order - 1, and not beyond: more points would resist flow that keeps the volume."""
+    basis = ground._basis(MeshTri(np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]), np.array([[0], [1], [2]])), order)
+    (x, _), powers = np.asarray(basis.global_coordinates()), range(2 * order + 1)
+    errors = [abs(float(np.vdot(basis.dx, x**power)) * (power + 1.0) * (power + 2.0) - 1.0) for power in powers]
+    assert max(errors[:-1]) < 1e-13
+    assert errors[-1] > 1e-6
+
+
+@pytest.mark.parametrize(
+    ("first", "firm", "end", "steps", "coarse", "fine"),
+    [
+        (1.0, 1.0, 1.5**8, 12, 0, 8), (1.0, 1.5**3, 1.5**9, 12, 3, 6), (0.2, 0.9, 0.9 * 1.2**7, 30, 4, 7),
+        (1.0, 1.5**9, 1.5**8, 12, 8, 0), (1.0, 1.01, 1.01 * 1.1**20, 60, 1, 20),
+    ],
+)  # fmt: skip
+def test_depths_of_a_loading_are_counted_by_hand(
+    first: float, firm: float, end: float, steps: int, coarse: int, fine: int
+) -> None:
+    """Half as deep again where nothing yields, by 6/steps from there on; as few as are needed, even of each kind."""
+    depths = replace(COURSE, first=first, firm=firm).depths(steps, end)
+    assert depths.size == coarse + fine + 1
+    assert depths[[0, coarse, -1]] == pytest.approx([first, min(max(firm, first), end), end], rel=1e-12)
+    for some, most in ((depths[: coarse + 1], 1.5), (depths[coarse:], 1.0 + 6.0 / steps)):
+        ratios = some[1:] / some[:-1]
+        assert ratios == pytest.approx(ratios[:1].repeat(ratios.size), rel=1e-9)
+        assert ratios.max(initial=1.0) <= most * (1.0 + 1e-8)
+
+
+def test_a_short_loading_has_a_depth_more_than_forces_of_a_smooth_curve() -> None:
+    """Seven of them, in even steps: its first may reach no point of the mesh."""
+    depths = replace(COURSE, first=1.0, firm=1.3).depths(12, 1.6)
+    assert depths == pytest.approx(1.6 ** (np.arange(7) / 6.0), rel=1e-12)
+
+
+def test_an_answer_is_in_units_of_its_course_whatever_was_expected() -> None:
+    """Settings of what yields have no length or time of their own: contacts that outgrow them do so by a factor."""
+    chosen = settings({}, COURSE)
+    assert (chosen.contact_radius, chosen.contact_time, chosen.peak_share) == (1.0, 1.0, 0.5)
+    assert COURSE.outgrown(3.0) == replace(COURSE, deepest=9.0 * COURSE.deepest)
 
 
 @dataclass(eq=False)

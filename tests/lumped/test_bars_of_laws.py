@@ -15,13 +15,14 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import beta
 
-from lumped import Model, Motion, Quantity, Scene, laws, simulate
-from lumped.indentation import FiniteSize, power_law
+from lumped import Material, Model, Motion, Quantity, Relaxation, Scene, Sphere, laws, simulate
+from lumped.indentation import FiniteSize, indent, power_law
 from lumped.laws import _force_law, _hereditary
-from lumped.laws._assembly import AROUND, BENDS, Answer, bars
+from lumped.laws._assembly import AROUND, BENDS, Answer, _NearPeak, bars, impulse_of, values_of
 from lumped.numbers import Array
-from lumped.result.history import End
+from lumped.result.history import AT_REST, End
 from lumped.result.result import UNITS, meets
+from lumped.scene.indenter import Indenter
 from lumped.scene.tables import LawChoice
 from lumped.solvers.point import half_widths
 from lumped.solvers.point.bodies import Bodies, Stage, State, Step
@@ -190,6 +191,22 @@ def test_a_force_that_ends_upright_is_known_to_its_end() -> None:
         assert history.force_error.max() <= 1e-3 * history.force.max(), alpha
 
 
+@pytest.mark.parametrize("alpha", [0.5, 1.5, 2.5])
+def test_rows_lie_ever_more_densely_towards_both_ends_of_a_force_that_is_a_root_there(alpha: float) -> None:
+    """Half as far away in the root in which it is smooth, down to rounding; and at the ends of all steps."""
+    scene = impact(np.random.default_rng(8), "hertz", alpha=alpha)
+    law = laws.hertz.of(scene)
+    track = _force_law._track(law, scene, 1, 1e-5)
+    power, end = law.grading(Stage(True, 0.0, scene.velocity)), track.times[-1]
+    assert power > 1
+    assert set(track.times) <= set(track.rows)
+    near = track.rows[1:10]
+    assert near[0] < 1e-25 * end
+    assert near[1:] / near[:-1] == pytest.approx(2.0**power, rel=1e-9)
+    left = end - track.rows  # of which rounding of the time leaves few digits
+    assert 3 <= np.count_nonzero((left > 1e-12 * end) & (left < 1e-6 * end)) < 25
+
+
 def test_slopes_at_the_nodes_of_a_step_are_those_of_polynomials() -> None:
     """The time of a peak errs by the slope of what the force lacks, over the curvature of the force."""
     x = half_widths.NODES.places
@@ -327,6 +344,29 @@ def test_the_bars_of_what_finite_spheres_add_hold_whatever_the_signs_of_the_erro
         assert max(ratios) == pytest.approx(1.0), name
 
 
+def test_a_slow_indentation_is_hertz_s_and_tells_what_it_missed() -> None:
+    """4/3 E* R^(1/2) d^(3/2), by the modulus that is left or that of an instant, whatever the order of its depths."""
+    indenter = Indenter(Sphere(0.01), Material(Relaxation(1e6, (3e6,), (0.1,)), 0.3))
+    depths = (2e-5, 1e-5, 4e-5)
+    for instant, young in ((False, 1e6), (True, 4e6)):
+        found = indent(indenter, depths, "hertz", instant, tolerance=1e-6)
+        exact = 4.0 / 3.0 * 0.1 * np.array(depths) ** 1.5
+        assert found.modulus == pytest.approx(young / 0.91, rel=1e-12)
+        assert found.force == pytest.approx(found.modulus * exact, rel=1e-12, abs=0.0)
+        assert found.contact_radius == pytest.approx(np.sqrt(0.01 * np.array(depths)), rel=1e-12, abs=0.0)
+        law = {name: quantity.value for name, quantity in found.quantities.items()}
+        assert law == pytest.approx({"alpha": 1.5, "D": 4.0 / 30.0, "D_at_alpha": 4.0 / 30.0}, rel=1e-9)
+        assert (found.converged, found.message, found.finite_size) == (True, "", None)
+    poor = replace(found, force_error=np.array([1e-9, 2e-6, 1e-9]) * found.force)
+    assert not poor.converged
+    assert poor.message == "tolerance 1e-06 not reached: force to 2e-06"
+    assert replace(poor, tolerance=3e-6).converged
+    assert indent(indenter, (1e-5, 2e-5, 1e-5), "hertz").quantities == {}, "three depths tell a law"
+    deepest = indent(indenter, (4e-5,), "hertz", True, tolerance=1e-6)
+    assert found.model_ledger == deepest.model_ledger
+    assert found.model_ledger != indent(indenter, (1e-5,), "hertz", True, tolerance=1e-6).model_ledger
+
+
 @pytest.mark.parametrize("name", ["peak_force", "restitution"])
 def test_a_bar_that_is_no_number_meets_no_tolerance(name: str) -> None:
     known = {each: Quantity(1.0, 1e-6, unit) for each, unit in UNITS.items()}
@@ -406,6 +446,112 @@ def test_a_peak_is_sought_no_closer_than_two_integrations_place_it() -> None:
         bar = bars(fine, coarse, 1.0)[0]["peak_time"].error
         assert 0.999 < bar / (apart or 2.0 * slope) < 1.2
         assert len(counts) <= 5
+
+
+def test_a_peak_s_time_is_known_to_where_its_height_is_the_same_to_rounding() -> None:
+    """Though two integrations agree in all that they say."""
+    values = {**dict.fromkeys(UNITS, 1.0), "peak_time": 1.0}
+    answer = Answer(np.linspace(0.0, 2.0, 41), Pushed(0.0, []), values, End.SEPARATED)
+    bar = bars(answer, answer, 1.0)[0]["peak_time"].error or 0.0
+    shifts = np.geomspace(1e-12, 1e-3, 2000)
+    alike = shifts[answer.columns.force(1.0 + shifts) == 1.0].max()
+    assert alike <= bar <= 2.0 * alike
+
+
+@pytest.mark.parametrize(("safety", "end"), [(1.0, End.SEPARATED), (1.5, End.SEPARATED), (2.0, End.REST)])
+def test_bars_are_a_safety_times_what_two_integrations_differ_by(safety: float, end: End) -> None:
+    """At times that both know: of the force the largest and the norm, over the norm of the force; a tenth of the norm
+    of any quantity at least, of its size but for a restitution, and of none where there is none.
+    """
+    slope, times = 1e-3, (np.linspace(0.0, 2.0, 401), np.linspace(0.0, 1.8, 601))
+    fine = {name: 5.0 for name in UNITS if name != "history_l2"}
+    fine |= {"restitution": 0.5, "peak_depth": -4.0, "duration": None, "peak_time": 1.0}
+    coarse = {**fine, "peak_force": 5.1, "impulse": 5.0 - 3e-9}
+    answers = [
+        Answer(at, Pushed(by, []), told, end) for at, by, told in zip(times, (0.0, slope), (fine, coarse), strict=True)
+    ]
+    found, force = bars(*answers, safety)
+    rounding = 1e-12 + (AT_REST if end is End.REST else 0.0)
+    norm = slope * math.sqrt(2.0**3 / 3.0) / math.sqrt(2.0 - 4.0 / 3.0 + 2.0 / 5.0)
+    errors = {name: quantity.error for name, quantity in found.items()}
+    assert list(found) == list(UNITS)
+    assert force == pytest.approx(safety * (2.0 * slope + 5.0 * rounding), rel=1e-12)
+    assert errors["history_l2"] == pytest.approx(safety * norm + rounding, rel=1e-4)
+    least = 0.1 * (errors["history_l2"] - rounding) / safety + rounding
+    assert errors["peak_force"] == pytest.approx(safety * 0.1, rel=1e-12)
+    assert errors["peak_depth"] == pytest.approx(safety * 4.0 * least, rel=1e-12)
+    assert errors["restitution"] == pytest.approx(safety * least, rel=1e-12)
+    assert errors["impulse"] == pytest.approx(safety * 5.0 * least, rel=1e-12)
+    assert found["duration"] == Quantity(None, None, "s")
+    assert {name: quantity.value for name, quantity in found.items()} == {"history_l2": 0.0, **fine}
+
+
+def test_how_a_force_bends_is_asked_for_between_the_rows_around_its_peak() -> None:
+    """Two of its own rows on either side, or as many as there are; nowhere before the touch and after the end."""
+    rows, values = np.linspace(0.0, 2.0, 41), dict.fromkeys(UNITS, 1.0)
+    for peak, low, high in ((1.0, 0.9, 1.1), (0.06, 0.0, 0.2), (0.02, 0.0, 0.15), (1.98, 1.9, 2.0)):
+        answer = Answer(rows, Pushed(0.0, []), {**values, "peak_time": peak}, End.SEPARATED)
+        near = _NearPeak.of(answer)
+        assert near.places[: AROUND.size] == pytest.approx(np.linspace(low, high, AROUND.size), abs=1e-12)
+        before, after = near.places[AROUND.size :].reshape(2, -1)
+        assert before == pytest.approx(np.maximum(peak - np.append(near.reaches, 0.0), 0.0))
+        assert after == pytest.approx(np.minimum(peak + np.append(near.reaches, 0.0), 2.0))
+        assert (near.whole, near.width) == pytest.approx((2.0, high - low))
+        assert near.reaches[0] == 2.0
+        assert near.reaches[-1] < 1e-8 * peak
+        assert near.reaches[1:] == pytest.approx(0.8 * near.reaches[:-1])
+    for peak in (0.0, 2.0):
+        assert not _NearPeak.of(Answer(rows, Pushed(0.0, []), {**values, "peak_time": peak}, End.SEPARATED)).places.size
+
+
+def test_a_result_tells_its_bars_as_they_are_ruled() -> None:
+    """Of forces, times and depths over the value, of a restitution and of the history as they are."""
+    scene = impact(np.random.default_rng(3), "hertz", alpha=1.5)
+    found = simulate(laws.hertz.of(scene), scene, 1e-4)
+    bars_of = found.error_budget_by_quantity["integration"]
+    force = found.quantities["peak_force"].value or 0.0
+    assert found.error_budget["integration"] == pytest.approx(found.history.force_error[0] / force, rel=1e-12)
+    assert set(bars_of) == set(UNITS)
+    for name, quantity in found.quantities.items():
+        relative = name in ("peak_force", "peak_depth", "peak_time", "duration", "impulse")
+        unit = abs(quantity.value or 0.0) if relative else 1.0
+        assert bars_of[name] == pytest.approx((quantity.error or 0.0) / unit, rel=1e-12, abs=0.0)
+    rows = [simulate(laws.hertz.of(scene), scene, tolerance).history.time.size for tolerance in (1e-2, 1e-6)]
+    assert 200 < rows[0] < 500 < rows[1], "as dense as the tolerance asks for"
+
+
+def test_an_impulse_is_the_momentum_lost_and_what_gravity_gave_meanwhile() -> None:
+    scene = Scene(None, 2.0, 3.0, law=LawChoice("hertz", {"k": 1e5}), model=Model(gravity=10.0))
+    assert impulse_of(scene, End.SEPARATED, -1.5, 0.25, 9.0) == pytest.approx(2.0 * (3.0 + 1.5 + 10.0 * 0.25))
+    assert impulse_of(scene, End.TIME, 0.5, 0.25, 9.0) == pytest.approx(2.0 * (3.0 - 0.5 + 10.0 * 0.25))
+    assert impulse_of(scene, End.REST, 1e-9, 0.25, 9.0) == pytest.approx(2.0 * (3.0 + 10.0 * 9.0)), (
+        "its weight is borne"
+    )
+    assert impulse_of(scene, End.SECOND_APPROACH, -1.5, 0.25, 9.0) is None
+    values = values_of(scene, End.SEPARATED, (0.1, 7.0), 0.02, -1.5, 0.25)
+    exact = {"peak_force": 7.0, "peak_time": 0.1, "peak_depth": 0.02, "duration": 0.25, "restitution": 0.5}
+    assert values == pytest.approx({**exact, "impulse": 2.0 * (4.5 + 2.5)})
+    other = values_of(scene, End.TIME, (0.1, 7.0), 0.02, 0.5, 0.25)
+    assert (other["duration"], other["restitution"]) == (None, None)
+
+
+@pytest.mark.parametrize("asked", [1e-5, 1e-9, 1e-10, 1e-12, 1e-20])
+def test_a_march_is_compared_with_one_a_hundred_times_less_fine(asked: float) -> None:
+    """As fine as is asked for once again a hundred times, but no finer than rounding lets it be."""
+    marched = list[float]()
+
+    def march(tolerance: float) -> tuple[Answer, int]:
+        marched.append(tolerance)
+        values = {**dict.fromkeys(UNITS, 1.0), "peak_time": 1.0}
+        return Answer(np.linspace(0.0, 2.0, 41), Pushed(tolerance, []), values, End.SEPARATED), len(marched)
+
+    judged = _force_law._compared(march, asked)
+    fine, coarse = marched
+    assert coarse == pytest.approx(100.0 * fine, rel=1e-12)
+    assert fine == pytest.approx(max(0.01 * asked, 1e-12), rel=1e-12)
+    assert judged.steps == 1, "those of the finer one"
+    assert judged.answer.columns.by == fine  # type: ignore[attr-defined]  # of the test's own columns
+    assert judged.force_error == pytest.approx(2.0 * (2.0 * (coarse - fine) + 1e-12), rel=1e-3)
 
 
 @pytest.mark.parametrize("rate", [-3.0, 0.0, 0.4])

@@ -17,7 +17,9 @@ from lumped.laws import _force_law
 from lumped.laws.correspondence import Correspondence
 from lumped.result.history import End
 from lumped.result.result import Result
+from lumped.scene.tables import LawChoice
 from lumped.solvers.point.bodies import Bodies, State
+from lumped.solvers.point.contact import contact
 from lumped.solvers.point.memory import RULES, HereditaryLoad, recovering, rule_of
 from lumped.solvers.point.track import Outcome
 
@@ -117,6 +119,36 @@ def test_a_surface_that_creeps_back_is_met_where_it_stands_by_then(
     assert there.depth == pytest.approx(depth - time * (speed - 0.5 * bodies.gravity * time), abs=1e-12 * speed * time)
 
 
+@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize("gravity", [1e-4, 1e-2])
+def test_however_light_they_meet_again_at_the_surface_as_it_was(rule: str, gravity: float, impact: Build) -> None:
+    """After a flight of many relaxation times nothing is remembered: a parabola from its dent back to depth zero."""
+    scene = impact(**SOLID)
+    law, bodies = laws.correspondence.law_of(scene, rule=rule), Bodies(scene.mass, scene.velocity, gravity)
+    assert law.time_scale(bodies) == scene.elastic_contact_time
+    speed, dent = 0.4 * scene.velocity, 0.02 * scene.velocity * scene.elastic_contact_time
+    last = State(dent, -speed, 0.0, (float(law.load.load(dent)),))
+    met = law.returned(bodies, last)
+    assert met is not None
+    time, there = met
+    assert time == pytest.approx((speed + (speed**2 - 2.0 * gravity * dent) ** 0.5) / gravity, rel=1e-6)
+    assert there.rate == pytest.approx((speed**2 - 2.0 * gravity * dent) ** 0.5, rel=1e-6)
+    assert np.abs(there.memory).max() < 1e-6 * last.memory[0]
+    assert law.returned(Bodies(scene.mass, scene.velocity, 0.0), last) is None
+    assert law.returned(Bodies(scene.mass, scene.velocity, -gravity), last) is None
+
+
+def test_every_contact_is_damped_by_its_own_speed() -> None:
+    """A law whose damping goes with the inverse of the speed at touch gives back the same share each time."""
+    law = LawChoice("hertzdamp", {"k": 1e9, "e": 0.6})
+    scene = Scene(None, 1.0, 2.0, law=law, model=Model(gravity=0.1), motion=Motion(impacts=3, end_time=1e3))
+    contacts = simulate(laws.hertzdamp.of(scene), scene, 1e-4).contacts
+    for number, one in enumerate(contacts):
+        assert one["velocity"] == pytest.approx(2.0 * 0.6**number, rel=1e-4)
+        assert one["restitution"] == pytest.approx(0.6, rel=1e-4)
+    assert len(contacts) == 3
+
+
 def test_tension_to_depth_zero_as_published(impact: Build, unit_time: float) -> None:
     # the audit of the paper, section 4: contact not clipped, in units of the elastic contact time
     for moduli, tau, e, duration in (((1.0,), 0.2, 0.539, 0.974), ((5.0,), 0.1, 0.017, None)):
@@ -153,6 +185,18 @@ def test_a_dashpot_that_lets_go_at_depth_zero_alone_is_followed_until_the_scene_
     result = simulate(Correspondence(exit="depth"), scene, 1e-4)
     assert result.message == End.TIME.value
     assert result.history.time[-1] == pytest.approx(scene.end_time, rel=1e-12)
+
+
+@pytest.mark.parametrize(("viscosity", "end"), [(10.0, End.SEPARATED), (1e3, End.SEPARATED), (1e4, End.REST)])
+def test_what_creeps_back_slower_than_any_number_tells_is_at_rest(viscosity: float, end: End, impact: Build) -> None:
+    """What a dashpot leaves of the velocity at depth zero falls as a power of it, and below 1e-20 is none."""
+    scene = impact(viscosity=viscosity, profile="parabola", end_time=1e9)
+    law, bodies = laws.correspondence.law_of(scene, exit="depth"), _force_law.bodies_of(scene)
+    found = contact(law, bodies, "depth", law.touch(bodies), 0.0, scene.end_time, 1e-6)
+    assert found.end is end
+    assert found.last.rate < 0.0
+    assert (abs(found.last.rate) < 1e-20 * scene.velocity) is (end is End.REST)
+    assert found.end_time < scene.end_time
 
 
 def test_flights_are_shorter_than_from_a_flat_surface(impact: Build) -> None:

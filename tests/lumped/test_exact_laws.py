@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from decimal import Decimal, localcontext
+from functools import reduce
 from itertools import pairwise
 from types import ModuleType, SimpleNamespace
 from typing import Any, NamedTuple
@@ -18,6 +20,7 @@ from numpy.typing import NDArray
 from lumped import Result, Scene, laws, simulate
 from lumped.laws import _assembly, _hereditary
 from lumped.laws._assembly import Answer
+from lumped.materials import Relaxation
 from lumped.result.history import End
 from lumped.scene.tables import Motion
 from lumped.shapes.cone import Cone
@@ -25,7 +28,19 @@ from lumped.shapes.power import PowerProfile
 from lumped.shapes.sphere import Sphere
 from lumped.solvers.hereditary.pieces import alone
 from lumped.solvers.mdr.nest import REST, Adaptive, Grid, Nest, Prescribed, coarse, limit, predicted_turn, problem_of
-from lumped.solvers.mdr.row import SERIES_BELOW, Instant, fading
+from lumped.solvers.mdr.row import (
+    SERIES_BELOW,
+    Instant,
+    Springs,
+    fading,
+    fadings,
+    followed,
+    followed_bend,
+    left,
+    none,
+    stretched,
+    yielding,
+)
 
 Array = NDArray[np.float64]
 
@@ -345,7 +360,75 @@ def test_a_fading_branch_is_integrated_however_long_the_step(ratio: float) -> No
     u, du = 0.5 * h * (places + 1.0), 0.5 * h * weights
     e = np.exp(-u / tau)
     integrals = (du @ e, du @ (e * (h - u)), du @ (e * (h - u) ** 2) / h, tau * (du @ np.expm1(-u / tau) ** 2))
-    assert fading(tau, h) == pytest.approx((math.exp(-ratio), *integrals), rel=1e-12)
+    assert fading(tau, h) == pytest.approx((math.exp(-ratio), *integrals), rel=1e-12, abs=0.0)
+
+
+@pytest.mark.parametrize("ratio", [1e-3, 0.06, 0.2, 0.35, np.nextafter(SERIES_BELOW, 0.0), SERIES_BELOW, 2.0])
+def test_a_fading_branch_loses_no_digits_between_its_series_and_its_closed_form(ratio: float) -> None:
+    """By the closed form in 60 digits, of which those that cancel are not missed."""
+    with localcontext() as digits:
+        digits.prec = 60
+        x, tau = Decimal(ratio), Decimal("0.5")
+        gone = 1 - (-x).exp()
+        grown = x - gone
+        bent, spilled = x - 2 * grown / x, grown - gone * gone / 2
+        exact = [float(one) for one in (1 - gone, tau * gone, *(tau * tau * one for one in (grown, bent, spilled)))]
+    assert fading(0.5, 0.5 * ratio) == pytest.approx(exact, rel=5e-15, abs=0.0)
+
+
+def test_springs_together_are_the_sum_of_each_alone() -> None:
+    """Of four springs: E_inf (depth - g) + eta rate + sum z_k each, z_k' = E_k rate - z_k/tau_k, z_k = Z_k - c_k."""
+    modulus, rng = Relaxation(1.3, (3.0, 0.7), (0.2, 5.0), viscosity=0.4), np.random.default_rng(7)
+    stiff, tau = (np.array(one)[:, None] for one in (modulus.moduli, modulus.times))
+    width, rest, lacks = rng.uniform(0.1, 1.0, 4), rng.uniform(0.0, 0.5, 4), rng.normal(size=(2, 4))
+    singles = [Springs.one(*one[:2], list(one[2:])) for one in np.vstack([width, rest, lacks]).T.tolist()]
+    together = reduce(Springs.plus, singles)
+    lifted = together.plus(singles[1], -1.0)
+    for mine, its in zip(lifted, reduce(Springs.plus, [singles[0], *singles[2:]]), strict=True):
+        assert mine == pytest.approx(its, rel=1e-12)
+    assert none(modulus) == Springs(0.0, 0.0, 0.0, [0.0, 0.0], [0.0, 0.0])
+    depth, rate, h, axis = 0.9, -0.6, 0.35, rng.normal(size=2)
+    z, faded = axis[:, None] - lacks, fadings(modulus, h)
+    force = together.force(modulus, depth, rate, axis.tolist(), together.kept)
+    assert force == pytest.approx(width @ (1.3 * (depth - rest) + 0.4 * rate + z.sum(axis=0)), rel=1e-12)
+    held = 0.5 * width @ (1.3 * (depth - rest) ** 2 + (z**2 / stiff).sum(axis=0))
+    assert together.held(modulus, depth, axis.tolist()) == pytest.approx(held, rel=1e-12)
+    places, weights = np.polynomial.legendre.leggauss(30)
+    time, weights = 0.5 * h * (places + 1.0)[:, None, None], 0.5 * h * weights
+    resting = z * np.exp(-time / tau)
+    moving = resting + stiff * tau * rate * -np.expm1(-time / tau)
+    impulse = weights @ (1.3 * (depth - rest) + resting.sum(axis=1)) @ width
+    assert together.impulse(modulus, depth, axis.tolist(), faded, h) == pytest.approx(impulse, rel=1e-12)
+    spent = weights @ (moving**2 / (stiff * tau)).sum(axis=1) @ width + 0.4 * rate**2 * width.sum() * h
+    assert together.spent(modulus, axis.tolist(), faded, h, rate) == pytest.approx(spent, rel=1e-12)
+    risen = weights @ (1.3 * rate * time[:, 0, 0] + 0.4 * rate + (moving - resting)[..., 0].sum(axis=1))
+    assert rate * yielding(modulus, faded, h) == pytest.approx(risen, rel=1e-12)
+    left_over = together.aged([0.25, 0.5])
+    assert left_over.kept == pytest.approx([0.25 * width @ lacks[0], 0.5 * width @ lacks[1]], rel=1e-12)
+    squares = [0.0625 * width @ lacks[0] ** 2, 0.25 * width @ lacks[1] ** 2]
+    assert left_over.kept_square == pytest.approx(squares, rel=1e-12)
+    assert left_over[:3] == together[:3]
+
+
+def test_memories_follow_lines_and_parabolas_as_their_integral_says() -> None:
+    """z' = E q - z/tau over a time, of two branches, by Gauss's rule for the integral of E q exp(-u/tau)."""
+    modulus, memory = Relaxation(1.0, (3.0, 0.7), (0.2, 5.0)), [0.4, -1.1]
+    begin, mean, end, h = 0.3, 1.7, 0.9, 0.6
+    share, weights = np.polynomial.legendre.leggauss(30)
+    share, weights = 0.5 * (share + 1.0), 0.5 * h * weights
+    # through the ends, with the mean that is left once the line has its own
+    parabola = begin + (end - begin) * share + 6.0 * (mean - 0.5 * (begin + end)) * share * (1.0 - share)
+    faded = fadings(modulus, h)
+
+    def exact(q: Array) -> list[float]:
+        pairs = zip(modulus.moduli, modulus.times, memory, strict=True)
+        return [z * math.exp(-h / t) + e * float(weights @ (q * np.exp((share - 1.0) * h / t))) for e, t, z in pairs]
+
+    line = begin + (end - begin) * share
+    assert followed(modulus, memory, faded, begin, end, h) == pytest.approx(exact(line), rel=1e-12)
+    assert followed_bend(modulus, memory, faded, begin, mean, end, h) == pytest.approx(exact(parabola), rel=1e-12)
+    assert stretched(modulus, memory, faded, 2.5) == pytest.approx(exact(np.full(30, 2.5)), rel=1e-12)
+    assert left(modulus, h) == pytest.approx([math.exp(-3.0), math.exp(-0.12)], rel=1e-14)
 
 
 @given(st.integers(0, 2**32 - 1))

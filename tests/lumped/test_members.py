@@ -135,7 +135,7 @@ def run(code: str) -> str:
 
 def test_scenes_and_the_spring_row_need_numpy_alone() -> None:
     code = (
-        "import sys, lumped; scene = lumped.Scene.load('steel-ball-sls'); lumped.laws.mdr.estimate(scene);"
+        "import sys, lumped; scene = lumped.Scene.load('steel-ball-sls'); lumped.laws.mdr.estimate(scene, 32);"
         "lumped.simulate(lumped.laws.mdr.of(scene), scene, 1e-4);"
         "print([m for m in ('scipy', 'skfem', 'gmsh', 'meshio', 'matplotlib') if m in sys.modules])"
     )

@@ -92,7 +92,7 @@ def test_steel_grid_of_the_audit(row: tuple[float, ...]) -> None:
 
 def test_estimate_is_close_and_cheap(impact: Callable[..., Scene]) -> None:
     scene = impact(0.1, (0.9,), (0.3,))
-    found, scales = values("mdr", scene), estimate(scene)
+    found, scales = values("mdr", scene), estimate(scene, 70)
     assert scales.peak_force == pytest.approx(found["peak_force"], rel=2e-4)
     assert scales.peak_depth == pytest.approx(found["peak_depth"], rel=2e-4)
     assert scales.duration == pytest.approx(found["duration"], rel=2e-4)

@@ -134,6 +134,43 @@ def test_what_the_striker_loses_is_in_the_waves(echo: float, mass: float, stiffn
         assert np.trapezoid(columns[2], fine) == pytest.approx(lost, rel=2e-3)
 
 
+@pytest.mark.parametrize("echo", ECHOES)
+def test_a_flat_impact_is_the_same_in_all_units(echo: float) -> None:
+    """Of velocity, of mass and of time: depth, velocity, force and what leaves grow with them as their units do."""
+    speed, heavier, longer = 3.0, 5.0, 0.25
+    one = flat(echo, 1.5, gravity=0.1, until=8.0)
+    waves = Waves(heavier / longer, echo, longer)
+    other = FlatImpact(waves, heavier * 1.5, speed, 0.1 * speed / longer, 8.0 * longer)
+    (_, end, parted), times = one.pieces, np.linspace(0.0, one.pieces[1] * 0.999, 50)
+    assert other.pieces[1:] == (pytest.approx(end * longer, rel=1e-12), parted)
+    units = np.array([speed * longer, speed, heavier * speed / longer, speed])[:, None]
+    assert other.columns(times * longer) == pytest.approx(units * one.columns(times), rel=1e-10)
+    rows = np.linspace(0.0, end, 200)
+    carried = [impact.waves.energies(lambda t, impact=impact: impact.columns(t)[3], at) for impact, at in
+               ((one, rows), (other, rows * longer))]  # fmt: skip
+    assert carried[1] == pytest.approx([heavier * speed**2 * energy for energy in carried[0]], rel=1e-9)
+
+
+@pytest.mark.parametrize("echo", ECHOES)
+def test_a_dent_s_impact_is_the_same_in_all_units(echo: float) -> None:
+    """Steps, tolerances and all: of velocity, of mass and of time."""
+    speed, heavier, longer, length = 3.0, 5.0, 0.25, 0.75
+    one = tipped(echo, 1.5, 2.0, gravity=0.1, rtol=1e-8)
+    waves, scales = (
+        Waves(heavier / longer, echo, longer),
+        RodScales(length * one.scales.depth, longer * one.scales.time),
+    )
+    unit = heavier * speed / longer
+    force = lambda dent: unit * one.force(dent / length)  # noqa: E731  # a law of one line
+    gravity, until = 0.1 * speed / longer, 8.0 * longer
+    other = TippedImpact(waves, force, heavier * 1.5, speed, gravity, until, scales, one.rtol)
+    assert other.pieces[1:] == (pytest.approx(one.pieces[1] * longer, rel=1e-9), one.pieces[2])
+    times, units = np.linspace(0.0, one.pieces[1] * 0.999, 50), np.array([length, speed, unit, speed])[:, None]
+    scaled, known = other.columns(times * longer), units * one.columns(times)
+    assert np.all(np.abs(scaled - known).max(axis=1) <= 1e-9 * np.abs(known).max(axis=1))
+    assert other.dents(times * longer) == pytest.approx(length * one.dents(times), abs=1e-9 * length)
+
+
 def test_a_stiff_rod_is_the_half_space_it_is_dented_like() -> None:
     """Hertz's impact as the impedance grows; the loss falls as its inverse."""
     losses = []

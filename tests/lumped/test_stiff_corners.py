@@ -13,6 +13,8 @@ import pytest
 from lumped import Material, Model, Motion, Relaxation, Scene, laws
 from lumped.errors import BadInput, TooManySteps
 from lumped.laws import correspondence, ting
+from lumped.laws._hereditary import once
+from lumped.result.history import End
 from lumped.scene.tables import LawChoice
 from lumped.shapes.power import PowerProfile
 from lumped.solvers.point.bodies import Bodies, PointLaw, Stage, State
@@ -165,3 +167,15 @@ def test_bodies_meet_again_at_the_surface_or_where_a_dashpot_no_longer_holds(gra
         assert set(stages) == {Stage(False, dent, 2.0)}
     assert PointLaw.returned(law, Bodies(1.0, 2.0, 0.0), last) is None
     assert PointLaw.returned(law, Bodies(1.0, 2.0, -1.0), last) is None
+
+
+def test_a_weight_however_light_brings_back_what_a_dashpot_holds(impact: Callable[..., Scene]) -> None:
+    """It takes 1.4 % of the velocity at touch in an elastic contact's time; without it the striker leaves."""
+    scene = impact(0.5, (0.5,), (0.3,), viscosity=3.0, end_time=300.0)
+    pulled = replace(scene, model=Model(gravity=0.014 * scene.velocity / scene.elastic_contact_time))
+    away, back = (once(one, 1e-3, ting.solve) for one in (scene, pulled))
+    assert away.end is End.SEPARATED
+    assert back.end is End.SECOND_APPROACH
+    assert back.values["restitution"] is None
+    depth = back.columns(back.times)[0]
+    assert 0.0 < depth[-1] < depth.max(), "in its dent, on the way back"

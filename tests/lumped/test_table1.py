@@ -10,7 +10,20 @@ import pytest
 
 from lumped.errors import BadInput
 from lumped.load_curves import ConeCurve, Hertz, PunchCurve
-from lumped.paper.table1 import ROWS, ConeRow, Elastic, PunchRow, SphereRow, TableRow, TwoSpheres, contact_modulus
+from lumped.paper.table1 import (
+    ROWS,
+    ConeRow,
+    CylinderRow,
+    Elastic,
+    PlateRow,
+    PrismRow,
+    PunchRow,
+    SphereRow,
+    TableRow,
+    TwoCylinders,
+    TwoSpheres,
+    contact_modulus,
+)
 
 STEEL = Elastic(2.0e11, 0.23)
 SOFT = Elastic(1.0e6, 0.45)
@@ -56,6 +69,29 @@ def test_corrected_rows_are_the_exact_load_curves(row: TableRow, curve: Hertz | 
     depth = np.array([-1e-4, 0.0, 1e-5, 1e-3])
     modulus = STEEL.young / (1.0 - STEEL.nu**2)
     assert row.force(depth, STEEL) == pytest.approx(modulus * np.asarray(curve.force(depth)), rel=1e-13)
+
+
+def test_forces_of_the_table_are_those_of_its_words() -> None:
+    """By hand, in lengths that are none of them one; spheres and cylinders side by side count as one of the gap."""
+    depth, young, nu = 2e-5, SOFT.young, SOFT.nu
+    half = young / (1.0 - nu**2)
+    alone = {
+        PrismRow(3e-4, 0.02): 3e-4 / 0.02 * young * depth,
+        PlateRow(3e-4, 0.02): 3e-4 / 0.02 * young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) * depth,
+        PunchRow(0.03): 0.06 * half * depth,
+        SphereRow(0.03): 4.0 / 3.0 * 0.03**0.5 * half * depth**1.5,
+        CylinderRow(0.03, 0.4): 0.1 * pi * half * depth,
+        ConeRow(45.0): 2.0 / pi * half * depth**2,
+    }
+    for row, force in alone.items():
+        assert row.force(depth, SOFT) == pytest.approx(force, rel=1e-12, abs=0.0), row.name
+        assert row.force(-depth, SOFT) == 0.0
+    both = 1.0 / ((1.0 - STEEL.nu**2) / STEEL.young + 1.0 / half)
+    spheres, cylinders = TwoSpheres(0.03, 0.06), TwoCylinders(0.03, 0.06, 0.4)
+    assert (spheres.length, cylinders.length) == pytest.approx((0.02, 0.02), rel=1e-12)
+    force = spheres.force(depth, STEEL, SOFT)
+    assert force == pytest.approx(4.0 / 3.0 * 0.02**0.5 * both * depth**1.5, rel=1e-12, abs=0.0)
+    assert cylinders.force(depth, STEEL, SOFT) == pytest.approx(0.1 * pi * both * depth, rel=1e-12, abs=0.0)
 
 
 @pytest.mark.parametrize("row", ROWS.values(), ids=lambda row: row.name)
