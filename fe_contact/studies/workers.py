@@ -163,7 +163,8 @@ class Processes(Executor):
                             self._heard(*said)
                     failure, found = said
                 except (EOFError, ConnectionError):
-                    self._known.discard(worker.process)
+                    with self._lock:
+                        self._known.discard(worker.process)
                     worker.process.join()
                     worker = None
                     continue
