@@ -224,7 +224,7 @@ class Curve:
         time, first = self.duration * np.maximum(x, BEGUN) ** 2, self.duration * float(self.x[1]) ** 2
         load = self.mean_force[1] * (time / first) ** power / relaxation.felt(first, power)[1]
         now, mean = relaxation.felt(time, power)
-        if relaxation.viscosity == 0.0:
+        if self.first_step == 0.0:
             return load * mean, load * (power + 1.0) * now
         since = x / (RISING * float(self.x[1]))
         left = np.exp(-since)
@@ -294,8 +294,8 @@ class Curve:
 
     @property
     def first_step(self) -> float:
-        """Up to when a force that rises almost at once may rise in any way, s: the first step on a dashpot, else 0."""
-        rises = self.strike.relaxation.viscosity > 0.0 and not self.flat
+        """Up to when a force that rises almost at once may do so in any way, s: under a line on a dashpot, else 0."""
+        rises = self.strike.relaxation.viscosity > 0.0 and self.strike.power <= 1.0 and not self.flat
         return self.duration * float(self.x[1]) ** 2 if rises else 0.0
 
     @property
