@@ -200,7 +200,7 @@ def test_a_fluid_creeps_and_is_never_said_to_separate(scene_of: Scenes) -> None:
     The row of springs, which is exact, says the same: not separated.
     """
     scene = scene_of({"law": "maxwell", "E": 1e6, "eta": 200.0})
-    assert mdr.estimate(scene).duration is None
+    assert mdr.estimate(scene, 70).duration is None
     chosen = plan(scene, {"tolerance": 1e-3}).numerics
     certified = certify(Strike.of(scene), scene.geometry, chosen)
     assert not certified.curve.separated
