@@ -14,6 +14,7 @@ from functools import partial
 from multiprocessing import active_children
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -24,7 +25,7 @@ from fe_contact.errors import ContactNotSettled, WorkerLost
 from fe_contact.studies import journal
 from fe_contact.studies.journal import measured, rows
 from fe_contact.studies.sweep.study import Rows
-from fe_contact.studies.workers import tell
+from fe_contact.studies.workers import Processes, _Worker, tell
 from lumped.errors import BadInput, CannotWrite, Fault
 from lumped.paper.table1 import Elastic, contact_modulus
 from meshes.errors import GmshMissing
@@ -227,6 +228,22 @@ def written(study: str, where: Path) -> dict[str, Any]:
     with (where / "tradeoff.csv").open(newline="", encoding="utf-8") as file:
         table = list(csv.DictReader(file))
     return {str(place): {key: value for key, value in row.items() if key != "cpu_s"} for place, row in enumerate(table)}
+
+
+def test_no_process_is_forgotten_while_all_of_them_are_shut_down() -> None:
+    """Whoever shuts them down goes through what is known: one that died amid that made a crash of an interrupt."""
+    executor, dead = Processes(1), _Worker(Mock(), Mock(**{"send.side_effect": EOFError}))
+    executor._idle.get()
+    executor._idle.put(dead)
+    executor._known.add(dead.process)
+    with executor._lock:
+        call = executor.submit(os.getpid)
+        time.sleep(0.05)
+        assert executor._known == {dead.process}
+        executor._ended = True
+    with pytest.raises(WorkerLost):
+        call.result()
+    assert not executor._known
 
 
 @pytest.mark.tenth
