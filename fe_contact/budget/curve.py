@@ -43,9 +43,8 @@ EARLIEST = 4  # rows after touch that tell whether steps or shares are more crow
 DENSE = SHARES**2 * (3 - 2 * SHARES)  # shares of the contact, crowded at its ends, for peaks and norms
 FIRST = 3  # steps: what relaxes later, polynomials tell
 BEGUN = 1e-12  # rounding: of x, below which a contact has only begun
-RISING = (
-    0.05  # of the first step, over x, in which what presses almost at once rises by 63 %: all of it within the step
-)
+# Of the first step, over x, in which what presses almost at once rises by 63 %: all of it within the step.
+RISING = 0.05
 INSIDE = np.arange(1, 8)[:, None] / 8  # places put into every interval
 
 
