@@ -100,7 +100,7 @@ def of(scene: Scene) -> SpringRow:
     return SpringRow()
 
 
-def estimate(scene: Scene, elements: int) -> ImpactScales:
+def estimate(scene: Scene, elements: int = 70) -> ImpactScales:
     """Scales of the impact from one coarse march, good to about 1/elements^2. Raises NotReached."""
     track = coarse(problem_of(scene), scene.end_time, elements)
     fields = np.array(track.approach + track.rebound).T
