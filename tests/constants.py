@@ -88,6 +88,7 @@ TABLE = (
     ),
     Constant(CURVE, "BEGUN", DERIVED, "rounding: 1e-24 of the contact time, where no load has a share of any force"),
     Constant(CURVE, "FIRST", DERIVED, "steps: polynomials through six nodes tell what relaxes later"),
+    Constant(CURVE, "RISING", DERIVED, "of the first step: of what rises in it exp(-20) is left at its end"),
     Constant(COMPARE, "CURVE_ORDER", DERIVED, "slopes of parabolas through three depths of a slow curve"),
     Constant(CURVE, "PEAK_SHARE", MEASURED, "a peak is judged by all forces above this share", 1.0),
     Constant(CURVE, "HALF_AS_HIGH", DERIVED, "a quartic places a peak to the fourth order of the width that it fits"),
