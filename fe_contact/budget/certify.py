@@ -66,7 +66,7 @@ WITNESS_ELEMENTS = 4.0  # of them along the contact radius, at least
 MESH_ORDER_ANYWHERE = 1.5  # where the edge falls anywhere in an element: the pressure has a root there
 NEAR_ANYWHERE = 0.6  # of the largest depth: down to it the edge passes half an element, and a chance agreement shows
 # what a mesh that stays changes weighs so much by a dashpot: its force jitters, which hides in what adds up
-DAMPED_ANYWHERE = {"duration": 8.0, "restitution": 3.0, "impulse": 3.0, "peak_depth": 3.0}
+DAMPED_ANYWHERE = {"duration": 8.0, "restitution": 3.0, "impulse": 3.0, "peak_depth": 6.0}
 # the same of exact enforcement, whose contact grows and shrinks by whole nodes
 NODEWISE_ANYWHERE = {**DAMPED_ANYWHERE, "peak_depth": 2.0}
 DAMPED_SINCE = 0.5  # share of the contact from which path and speed count there: the end alone may agree by chance
