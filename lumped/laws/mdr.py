@@ -16,7 +16,17 @@ from lumped.numbers import Array, Clock, local, peak
 from lumped.result.history import End
 from lumped.result.result import Result, largest_bar, meets
 from lumped.scene.scene import Scene
-from lumped.solvers.mdr.nest import Level, Nest, coarse, coarse_beyond, limit, pace_of, predicted_turn, problem_of
+from lumped.solvers.mdr.nest import (
+    Level,
+    Nest,
+    coarse,
+    coarse_beyond,
+    limit,
+    pace_of,
+    predicted_turn,
+    problem_of,
+    shrinks_until,
+)
 
 # Of the fields of Instant the force, and those which are seen: depth, velocity, force, edge.
 FORCE, SEEN = 4, [1, 2, 4, 5]
@@ -66,6 +76,10 @@ class SpringRow:
         nest = Nest.around(problem, stop, track, pace_of(problem, stop, ELEMENTS), INTERVALS)
         if stop > scene.end_time:
             nest = replace(nest, cut=scene.end_time)
+        shrinks = None if track.end is End.SEPARATED else shrinks_until(problem, scene.end_time, ELEMENTS)
+        again = shrinks is not None
+        if shrinks is not None:
+            nest = replace(nest, end_time=shrinks or stop, turns=not shrinks, cut=None)
         nest, level, before = nest.begun(track.approach[-1].time)
         levels, limits, widest, parts = [level], list[Level](), list[float](), 1
         while parts < MOST_PARTS:
@@ -75,12 +89,12 @@ class SpringRow:
             levels.append(nest.level(parts, turn))
             limits.append(limit(levels[-2], levels[-1], 2))
             if len(limits) > 1:
-                answer = _answer(scene, limit(limits[-2], limits[-1], 4))
-                quantities, force_error = bars(answer, _answer(scene, limits[-2]), SAFETY)
+                answer = _answer(scene, limit(limits[-2], limits[-1], 4), again)
+                quantities, force_error = bars(answer, _answer(scene, limits[-2], again), SAFETY)
                 # Steps cut by an end that no whole step follows err by no even power: limits may gain nothing on the
                 # finest march. The one before it errs about four times as much.
                 if any(level.within_step for level in levels[-3:]):
-                    others, least = bars(answer, _answer(scene, levels[-2]), 1.0)
+                    others, least = bars(answer, _answer(scene, levels[-2], again), 1.0)
                     quantities, force_error = wider(quantities, others), max(force_error, least)
                 widest.append(largest_bar(quantities))
                 known = (quantities["history_l2"].error or 0.0) <= tolerance
@@ -122,14 +136,14 @@ def _stalled(widest: Sequence[float]) -> bool:
     return len(widest) > STALLED and min(widest[-STALLED:]) > NO_BETTER * min(widest[:-STALLED])
 
 
-def _answer(scene: Scene, level: Level) -> Answer:
-    """The dense answer of one level."""
-    end, separated = level.end, level.end is End.SEPARATED
+def _answer(scene: Scene, level: Level, again: bool) -> Answer:
+    """The dense answer of one level, which stops because the striker approaches `again`, or as the level does."""
+    end, separated = End.SECOND_APPROACH if again else level.end, level.end is End.SEPARATED
     dense, whole = _Dense(level, separated), level.approach
     if level.rebound.size:
         whole = _ascending(np.hstack([level.approach, level.rebound[:, 1:]]))
     time, (depth, velocity, force, _) = whole[0], whole[SEEN]
-    if end is End.TIME and time[-1] > level.last:
+    if level.end is End.TIME and time[-1] > level.last:
         time = np.append(time[time < level.last], level.last)
         depth, velocity, force, _ = dense(time)
     values = values_of(scene, end, peak(time, force), float(depth.max()), float(velocity[-1]), float(time[-1]))

@@ -269,6 +269,16 @@ def test_a_law_that_cannot_go_on_says_so(impact: Callable[..., Scene]) -> None:
         assert result.quantities["duration"].value is None
 
 
+@pytest.mark.parametrize("gravity", [3.0, 9.81, 40.0])
+def test_the_spring_row_ends_before_its_edge_turns(gravity: float, impact: Callable[..., Scene]) -> None:
+    """Springs that are left behind and met again carry another force than it would give them."""
+    for exact, row in (both(impact(0.2, (0.8,), (0.1,), gravity=gravity, velocity=v), 1e-4) for v in (0.01, 0.03)):
+        assert End.SECOND_APPROACH.value in exact.message
+        assert row.history.time[-1] <= exact.history.time[-1]
+        off = np.abs(exact.history.force_at(row.history.time) - row.history.force)
+        assert np.all(off <= row.history.force_error + 1e-4 * row.history.force.max())
+
+
 def test_bars_never_rest_on_one_chance_agreement() -> None:
     from lumped.laws._assembly import bars
 

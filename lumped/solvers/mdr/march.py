@@ -7,8 +7,8 @@ runs over the ground of one step of the approach, the last that is left; sought 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import NamedTuple, Protocol
 
 from lumped.errors import NotReached, TooManySteps
@@ -45,6 +45,8 @@ GAUSS = (0.5 - 0.5 / math.sqrt(3.0), 0.5 + 0.5 / math.sqrt(3.0))
 # Work: steps tried for the separation; of the step, to which it is found; times it, most to try next.
 TRIES, CLOSE, WIDER = 100, 1e-7, 4.0
 WHOLE_STEPS = 4  # the finer of two marches needs two more than the coarser to get as far
+# Work: shares of a step at which a force is looked at.
+SAMPLES = (0.01, 0.03, 0.1, 0.3, 0.6, 0.9, 1.0)
 # What to try first at least, of the time so far.
 SHORT = 1e-14
 # A step that takes no time, s.
@@ -90,7 +92,7 @@ def march(problem: RowProblem, end_time: float, pace: Pace, most: int, at_rest: 
 
     `pace` is that of the approach. Raises NotReached, TooManySteps after `most` steps of it.
     """
-    return rebound(approach(problem, end_time, pace, most, at_rest), end_time)
+    return rebound(approach(problem, end_time, pace, most, at_rest), end_time, doubted=True)
 
 
 def approach(problem: RowProblem, end_time: float, pace: Pace, most: int, at_rest: float = AT_REST) -> Inward:
@@ -103,15 +105,23 @@ def approach(problem: RowProblem, end_time: float, pace: Pace, most: int, at_res
     return Inward(row, instants, None if turned else End.REST if rests else End.TIME)
 
 
-def rebound(inward: Inward, end_time: float) -> RowTrack:
-    """What follows an approach: until the spring at the axis carries no force, or gravity turns the striker again."""
+def rebound(inward: Inward, end_time: float, doubted: bool = False) -> RowTrack:
+    """What follows an approach: until the spring at the axis carries no force, or the edge turns under gravity.
+
+    `doubted`: whether it may turn in a last step that `end_time` cuts.
+    """
     row, turn = inward.row, inward.instants[-1]
     if inward.end:
         return _track(inward, [], inward.end)
     if turn.acceleration >= 0.0:
-        return _track(inward, [], End.SECOND_APPROACH)
-    found = retreat(row, turn, end_time)
+        return at_turn(inward)
+    found = retreat(row, turn, end_time, doubted)
     return _track(inward, found.instants, found.end, found.beyond)
+
+
+def at_turn(inward: Inward) -> RowTrack:
+    """An approach after which no rebound is followed."""
+    return _track(inward, [], End.SECOND_APPROACH)
 
 
 def _track(inward: Inward, outward: list[Instant], end: End, beyond: list[Instant] | None = None) -> RowTrack:
@@ -236,8 +246,8 @@ class Retreat(NamedTuple):
     beyond: list[Instant]
 
 
-def retreat(row: SpringsInRow, start: Instant, end_time: float) -> Retreat:
-    """From the turn until the springs at the axis leave, gravity turns the striker, or `end_time`, s.
+def retreat(row: SpringsInRow, start: Instant, end_time: float, doubted: bool) -> Retreat:
+    """From the turn until the springs at the axis leave, the edge does not reach its next place, or `end_time`, s.
 
     Raises NotReached.
     """
@@ -245,15 +255,16 @@ def retreat(row: SpringsInRow, start: Instant, end_time: float) -> Retreat:
     while len(row.places) > 1:
         now = track[-1]
         shrinking = Shrinking(row, now)
-        tried, end = _found(shrinking, _next(row, paces))
-        if now.time + tried.h > end_time:
+        tried = _found(shrinking, _next(row, paces))
+        if tried is None or now.time + tried.h > end_time:
             beyond = _beyond(row.copy(), now, paces)
-            cut = shrinking.step(shrinking.attempt(end_time - now.time))
+            last = shrinking.attempt(end_time - now.time)
+            if tried is None and (last.velocity > 0.0 or (doubted and shrinking.turns_before(end_time))):
+                return Retreat(track, End.SECOND_APPROACH, [])
+            cut = shrinking.step(last)
             row.take(cut)
             return Retreat([*track, cut.now], End.TIME, beyond)
         track.append(_taken(row, shrinking, tried, paces))
-        if end is not End.SEPARATED:
-            return Retreat(track, end, [])
     return Retreat(track, End.SEPARATED, [])
 
 
@@ -270,8 +281,8 @@ def _beyond(row: SpringsInRow, now: Instant, paces: list[float]) -> list[Instant
     track, paces = [now], list(paces)
     while len(row.places) > 1 and len(track) <= WHOLE_STEPS:
         shrinking = Shrinking(row, track[-1])
-        tried, end = _found(shrinking, _next(row, paces))
-        if end is not End.SEPARATED:
+        tried = _found(shrinking, _next(row, paces))
+        if tried is None:
             break
         track.append(_taken(row, shrinking, tried, paces))
     return track[1:]
@@ -290,37 +301,37 @@ def _inward(row: SpringsInRow) -> float:
     return row.places[-1].time - row.places[-2].time
 
 
-def _found(shrinking: Shrinking, guess: float) -> tuple[Attempt, End]:
-    """The step after which nothing is left of the force at the next place; or after which gravity turns the striker."""
+def _found(shrinking: Shrinking, guess: float) -> Attempt | None:
+    """The step after which nothing is left of the force at the next place; None where gravity turns the striker first.
+
+    Raises NotReached.
+    """
     low, left, h = 0.0, shrinking.pull, max(guess, SHORT * shrinking.now.time)
     if left <= 0.0:
-        return shrinking.attempt(0.0), End.SEPARATED
+        return shrinking.attempt(0.0)
     for _ in range(TRIES):
         tried = shrinking.attempt(h)
         if tried.pull <= 0.0:
-            return _zero(shrinking, lambda attempt: attempt.pull, low, left, tried), End.SEPARATED
+            return _released(shrinking, low, left, tried)
         if tried.velocity > 0.0:
-            fast = -shrinking.now.velocity or tried.velocity
-            return _zero(shrinking, lambda attempt: -attempt.velocity, 0.0, fast, tried), End.SECOND_APPROACH
+            return None
         further = h + tried.pull * (h - low) / (left - tried.pull) if tried.pull < left else WIDER * h
         if further - h <= CLOSE * h:
-            return tried, End.SEPARATED
+            return tried
         low, left, h = h, tried.pull, min(WIDER * h, further)
     raise NotReached(f"the springs at the edge did not leave after {shrinking.now.time:.6g} s; cure: another --method")
 
 
-def _zero(
-    shrinking: Shrinking, left: Callable[[Attempt], float], low: float, at_low: float, beyond: Attempt
-) -> Attempt:
-    """The step with nothing left, between a length with something left and a step beyond."""
+def _released(shrinking: Shrinking, low: float, at_low: float, beyond: Attempt) -> Attempt:
+    """The step after which nothing is left, between a length with something left and a step beyond."""
     tried = beyond
 
     def left_after(h: float) -> float:
         nonlocal tried
         tried = shrinking.attempt(h)
-        return left(tried)
+        return tried.pull
 
-    falling_zero(left_after, low, beyond.h, (at_low, left(beyond)), CLOSE)
+    falling_zero(left_after, low, beyond.h, (at_low, beyond.pull), CLOSE)
     return tried
 
 
@@ -360,6 +371,13 @@ class Shrinking:
         """Force per length, now, of the spring at the place to which the edge runs."""
         lift = self._lift(self.now.depth, self.now.velocity)
         return lift + sum(self.row.axis) - sum(self.lacking)
+
+    def turns_before(self, time: float) -> bool:
+        """Whether the force at the next place rises before a time, s: where the edge turns, it meets springs again that
+        it has left, and what they carry the row does not know.
+        """
+        pulls = [self.pull, *(self.attempt(share * (time - self.now.time)).pull for share in SAMPLES)]
+        return any(after >= before for before, after in pairwise(pulls))
 
     def attempt(self, h: float) -> Attempt:
         """A step of this length: m (v1 - v0) = m g h - int F dt with v0 + v1 twice the rate."""

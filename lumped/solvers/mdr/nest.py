@@ -18,7 +18,7 @@ from lumped.numbers import Array, local
 from lumped.result.history import End
 from lumped.scene.geometry import stiffest_impact
 from lumped.scene.scene import Scene
-from lumped.solvers.mdr.march import Inward, RowTrack, approach, march, rebound
+from lumped.solvers.mdr.march import Inward, RowTrack, approach, at_turn, march, rebound
 from lumped.solvers.mdr.row import Instant, RowProblem
 
 # Work: marches until the turn falls on a step; safety: the secant's slope is no flatter.
@@ -35,6 +35,8 @@ OVERREACH = 1.5  # safety: the last step over its own length, so that it reaches
 MOST_STEPS = 10_000  # work: of one coarse march
 # An end time is near a turn that comes before so many times it, and not more than so many steps before it.
 FURTHER, NEAR = 1.2, 1.5
+# Of a march: elements over those of other coarse ones, safety; the last of its steps but these, since it errs itself.
+SHARPER, SURE = 4, 3
 
 
 @dataclass
@@ -140,6 +142,17 @@ def coarse_beyond(problem: RowProblem, end_time: float, elements: int) -> tuple[
     return (beyond, later) if beyond.end is End.TIME else (track, end_time)
 
 
+def shrinks_until(problem: RowProblem, end_time: float, elements: int) -> float | None:
+    """Until when, s, the edge is seen to shrink that turns under gravity before the end time; None where it does not.
+
+    Zero where it does as soon as the striker turns, or a few steps later. Raises NotReached.
+    """
+    track = coarse(problem, end_time, SHARPER * elements) if problem.gravity > 0.0 else None
+    if track is None or track.end is not End.SECOND_APPROACH:
+        return None
+    return track.rebound[-SURE].time if len(track.rebound) > SURE else 0.0
+
+
 def pace_of(problem: RowProblem, end_time: float, elements: int) -> Adaptive:
     """Its pace."""
     reach = stiffest_impact(problem.shape, problem.modulus, problem.mass, problem.velocity).contact_radius
@@ -180,7 +193,7 @@ class Level:
 class Nest:
     """A problem, when to stop (s), the grid of its approach, and whether the striker counts as at rest then.
 
-    `cut`: when the history is to end, s, where marches go on beyond it.
+    `cut`: when the history is to end, s, where marches go on beyond it; `turns`: whether it ends with the approach.
     """
 
     problem: RowProblem
@@ -188,6 +201,7 @@ class Nest:
     grid: Grid
     rests: bool = False
     cut: float | None = None
+    turns: bool = False
 
     @classmethod
     def around(cls, problem: RowProblem, end_time: float, track: RowTrack, pace: Adaptive, intervals: int) -> Nest:
@@ -212,11 +226,14 @@ class Nest:
         """
         times = self.grid.times(turn, 1)
         inward, half = self._approach(times), self._approach(times[1::2])
-        level = self._level(rebound(inward, self.end_time), times, len(inward.instants) + len(half.instants))
+        level = self._level(self._back(inward), times, len(inward.instants) + len(half.instants))
         return replace(self, grid=Grid.through(inward.instants)), level, half.instants[-1].time
 
     def _approach(self, times: list[float]) -> Inward:
         return approach(self.problem, self.end_time, Prescribed(times), 2 * len(times), at_rest=0.0)
+
+    def _back(self, inward: Inward) -> RowTrack:
+        return at_turn(inward) if self.turns else rebound(inward, self.end_time)
 
     def level(self, parts: int, turn: float) -> Level:
         """March with every step cut into `parts`, again with a better time of the turn, s, until that is met.
@@ -230,7 +247,7 @@ class Nest:
             steps += len(inward.instants)
             *_, before, last = (instant.time for instant in inward.instants)
             if len(inward.instants) == len(times) + 1 and abs(last - turn) <= NEARLY * (last - before):
-                return self._level(rebound(inward, self.end_time), times, steps)
+                return self._level(self._back(inward), times, steps)
             # The turn hardly depends on where it was expected, mostly: the slope is -1, else the secant's.
             slope = min((last - turn - missed) / (turn - tried), LEAST_SLOPE) if tried else -1.0
             tried, missed = turn, last - turn
@@ -238,6 +255,8 @@ class Nest:
         raise NotReached("finer and coarser steps of the spring row do not follow the same course of events")
 
     def _level(self, track: RowTrack, times: list[float], steps: int) -> Level:
+        if track.end is End.SECOND_APPROACH and track.rebound:
+            raise NotReached("steps of the spring row finer than the first ones see its edge turn; cure: --method ting")
         steps += len(track.rebound) + len(track.beyond)
         outward = [*track.rebound[:-1], *track.beyond] if track.beyond else track.rebound
         ended = track if self.cut is None else self._ended(times, self.cut)
