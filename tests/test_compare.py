@@ -78,6 +78,7 @@ def integral(pressure: LawPressure, time: float, inner: float, outer: float) -> 
     return float(2 * np.pi * s @ pressure.at(time, np.sqrt(outer**2 - s**2)) * longest / 400)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("material", MATERIALS)
 def test_the_clipped_law_pulls_in_the_rebound_and_the_exact_ones_never(material: str) -> None:
     scene = Scene.load("polymer-sphere", MATERIALS[material])
@@ -268,6 +269,7 @@ def test_the_chart_is_reproducible(tmp_path: Path, compared: Comparison) -> None
     assert [path.read_bytes() for path in first] == [path.read_bytes() for path in again]
 
 
+@pytest.mark.tenth
 def test_the_command_writes_what_it_prints(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     chosen = ["--laws", "ting,correspondence,ting", "--json", "--quiet", "--out", str(tmp_path)]
     assert main(["compare", "polymer-sphere", *chosen]) == 0
@@ -325,6 +327,7 @@ def test_an_unreadable_measurement_writes_nothing(tmp_path: Path, refused: Calla
     assert "force_N" in refused("compare", "polymer-sphere", "--measured", str(curve))[0]
 
 
+@pytest.mark.tenth
 def test_the_clock_of_a_measured_curve_is_told_by_its_touch(
     tmp_path: Path, empty: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -22,6 +22,7 @@ from lumped.errors import BadInput
 from lumped.numbers import Array
 
 
+@pytest.mark.tenth
 def test_a_washer_is_compared_with_laws_on_its_own_slow_curve(tmp_path: Path) -> None:
     """No closed form is known: the laws follow the indentation, and its bar is theirs too."""
     assert main(["compare", "polymer-washer", "--out", str(tmp_path)]) == 0
@@ -68,6 +69,7 @@ def test_the_chart_of_a_block_tells_sizes_as_they_are(tmp_path: Path) -> None:
     assert svg.stat().st_size > 0
 
 
+@pytest.mark.tenth
 def test_the_pressure_under_a_cylinder_carries_the_force_and_is_that_of_ting(recwarn: pytest.WarningsRecorder) -> None:
     """In Pa, whatever the length of the cylinder; strips of the surface weigh alike, where rings would not."""
     scene = Scene.load("polymer-layer-line", {"striker.length": 0.03 * np.random.default_rng(4).uniform(2.0, 5.0)})

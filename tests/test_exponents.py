@@ -280,6 +280,7 @@ def test_logarithms_on_a_cone_are_right_at_both_ends(ratio: float) -> None:
     assert abs(bias(1e-5)) < 2e-3
 
 
+@pytest.mark.tenth
 def test_tings_law_returns_the_rows_exponent(campaign_size: Callable[..., int]) -> None:
     """On random solids, whose moduli and time it is not told, within its bar."""
     random = np.random.default_rng(5)

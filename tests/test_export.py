@@ -127,6 +127,7 @@ def test_the_finer_mesh_of_two_divides_the_coarser_one(tmp_path: Path) -> None:
         assert len(fine) == 2 * len(coarse) - 1
 
 
+@pytest.mark.tenth
 def test_other_programs_found_the_same() -> None:
     """Within our bars and what each errs by on its own account."""
     with (CROSSCHECK / "crosscheck.csv").open(encoding="utf-8", newline="") as file:

@@ -191,6 +191,7 @@ def test_a_value_ends_where_its_error_begins(value: float, error: float, text: s
     assert with_error(value, error, "N") == text
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("scene", ["bar-impact", "pounding-steel-jankowski"])
 def test_a_history_without_a_pressure_is_drawn_too(scene: str, tmp_path: Path) -> None:
     """Bodies with inertia and bare laws tell no pressure: the chart names the method and has two panels."""

@@ -23,6 +23,7 @@ ROWS = {row.indenter.shape.name: row for row in reversed(finite_rows())}
 UNLIKE = ("st_venant_kirchhoff",)  # the largest first order
 
 
+@pytest.mark.tenth
 def test_light_strains_leave_the_exponent_as_the_first_order_has_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """F = F_small (1 + c1 x), x = (depth/R)^(1/2), is an exponent 3/2 + c1 x/2; next to it comes x^2."""
     monkeypatch.setattr(study, "ENERGIES", UNLIKE)
@@ -109,6 +110,7 @@ def test_every_study_has_rows_of_its_own() -> None:
         assert row.strained("yeoh").model.finite
 
 
+@pytest.mark.tenth
 def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     chosen = (ROWS["prism"], ROWS["punch"])
     monkeypatch.setattr("fe_contact.studies.table1.study.finite_rows", lambda: chosen)

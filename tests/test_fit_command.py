@@ -81,6 +81,7 @@ def test_a_person_reads_intervals(body: Path, curve: Path, tmp_path: Path, capsy
     assert "correlated" in said.err
 
 
+@pytest.mark.tenth
 def test_opensees_lines_are_a_file_of_their_own(
     body: Path, curve: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -228,6 +229,7 @@ def test_all_laws_have_their_own_parameters(curve: Path, body: Path, refused: Ca
     assert any(said in one for one in faults)
 
 
+@pytest.mark.tenth
 def test_what_is_held_without_being_asked_is_said(
     body: Path, curve: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

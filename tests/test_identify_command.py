@@ -147,6 +147,7 @@ def test_a_key_of_one_curve_that_is_none_is_named(
     assert f"{own.partition('=')[0]}: unknown key" in fault
 
 
+@pytest.mark.tenth
 def test_a_curve_s_path_may_look_like_keys_of_its_own(curves: tuple[Path, Path], empty: Path) -> None:
     named = empty / "drop:mass=0.05.csv"
     named.write_bytes(curves[0].read_bytes())

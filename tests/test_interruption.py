@@ -89,6 +89,7 @@ def test_a_signal_is_answered_by_one_line_even_in_a_library_that_does_not_come_b
         assert len(err.splitlines()) == 1, err
 
 
+@pytest.mark.tenth
 def test_a_signal_while_python_cleans_up_is_answered_by_one_line() -> None:
     run = subprocess.run(
         [sys.executable, "-c", CLEANING], cwd=ROOT, capture_output=True, text=True, check=False, timeout=60
@@ -148,6 +149,7 @@ def test_a_closed_stdout_is_refused_before_the_work(empty: Path) -> None:
     assert not (empty / "results").exists()
 
 
+@pytest.mark.tenth
 def test_a_reader_that_leaves_ends_nothing_but_the_talk(empty: Path) -> None:
     shell = f'"{sys.executable}" -m fe_contact {" ".join(FAST)} | true; echo "${{PIPESTATUS[0]}}"'
     done = subprocess.run(["bash", "-c", shell], cwd=empty, capture_output=True, text=True, check=False, timeout=120)

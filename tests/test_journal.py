@@ -133,6 +133,7 @@ def test_what_a_failure_interrupts_keeps_its_rows(tmp_path: Path, calls_measured
 # processes
 
 
+@pytest.mark.tenth
 def test_processes_ask_others_and_what_they_tell_is_heard(tmp_path: Path) -> None:
     heard = list[str]()
     asked = {name: moduli(*youngs) for name, youngs in {"soft": (1.0, 2.0), "stiff": (3.0, 4.0)}.items()}
@@ -151,6 +152,7 @@ def test_processes_are_killed_when_nobody_asks_any_more() -> None:
     assert not active_children()
 
 
+@pytest.mark.tenth
 def test_a_process_that_dies_is_a_named_failure() -> None:
     with pytest.raises(WorkerLost, match="memory"):
         list(measured({"dies": partial(os._exit, 9), "long": partial(time.sleep, LONG)}, 2))
@@ -158,6 +160,7 @@ def test_a_process_that_dies_is_a_named_failure() -> None:
     assert WorkerLost().exit_code == 3
 
 
+@pytest.mark.tenth
 def test_an_answer_that_cannot_be_sent_is_not_waited_for() -> None:
     with pytest.raises(WorkerLost):
         list(measured({"a file": partial(open, os.devnull), "short": partial(abs, -1.0)}, 2))

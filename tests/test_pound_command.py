@@ -67,6 +67,7 @@ def changed(key: str, value: object) -> dict[str, Any]:
     return table
 
 
+@pytest.mark.tenth
 def test_what_is_written_belongs_together(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["pound", "two-frames", "--laws", "hertz", "--json", *SHORT, "--out", str(tmp_path)]) == 0
     out, err = capsys.readouterr()
@@ -195,6 +196,7 @@ def test_what_cannot_be_calibrated_is_said_before_any_work(
         calibrated_study(reader.case(), [], by, "no such method")
 
 
+@pytest.mark.tenth
 def test_an_odd_case_is_written_too(tmp_path: Path) -> None:
     """Without a gap, and without a contact."""
     found = study(read(changed("gap.floor.distance", 5.0)))

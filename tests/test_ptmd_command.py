@@ -63,6 +63,7 @@ def test_the_paper_case_is_written_as_it_is_printed(tmp_path: Path, capsys: pyte
     assert written["model_ledger"][0]["estimate"] == pytest.approx(written["measures"]["peak_depth"] / 0.006)
 
 
+@pytest.mark.tenth
 def test_rows_and_contacts_belong_to_the_measures(tmp_path: Path) -> None:
     assert main(["ptmd", "paper", *SHORT, "--out", str(tmp_path)]) == 0
     written = json.loads((tmp_path / "ptmd.json").read_text(encoding="utf-8"))
@@ -77,6 +78,7 @@ def test_rows_and_contacts_belong_to_the_measures(tmp_path: Path) -> None:
     assert rows["time_s"][[0, -1]] == pytest.approx([0.0, 1.0])
 
 
+@pytest.mark.tenth
 def test_the_default_folder_carries_the_name_and_what_was_changed(empty: Path) -> None:
     assert main(["ptmd", *SHORT, "--set", "name=mine"]) == 0
     assert [path.name for path in (empty / "fe-contact-out").iterdir()] == ["ptmd-mine-motion.end_time=1.0"]
@@ -91,6 +93,7 @@ def test_the_summary_tells_every_variant(tmp_path: Path, capsys: pytest.CaptureF
     assert [entry["treated"] for entry in ledger] == ["small strain", "relaxed"]
 
 
+@pytest.mark.tenth
 def test_what_does_not_converge_is_written_and_said(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -118,6 +121,7 @@ def test_the_chart_is_reproducible(tmp_path: Path) -> None:
     assert [path.read_bytes() for path in first] == [path.read_bytes() for path in again]
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("missing", [["ring"], ["ring", "damper"]])
 def test_a_plain_damper_and_a_bare_structure_are_cases_too(missing: list[str], tmp_path: Path) -> None:
     found = study(read({key: table for key, table in CASE.items() if key not in missing}))

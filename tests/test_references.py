@@ -73,6 +73,7 @@ def test_a_published_history_tells_its_own_quantities(name: str) -> None:
     assert impulse == pytest.approx(said["impulse"].value, rel=5e-3) or contacts > 1
 
 
+@pytest.mark.tenth
 def test_a_scene_is_answered_with_the_settings_of_its_file() -> None:
     """The jumps of a bar that bounces miss the default tolerance, as their norm falls with the root of the step."""
     (one,) = renewed(["bar"], folder())

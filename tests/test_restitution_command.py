@@ -64,6 +64,7 @@ def test_the_chart_is_the_same_every_time(tmp_path: Path, lines: tuple[Restituti
     assert first == [path.read_bytes() for path in plot_restitution(lines, tmp_path / "two")]
 
 
+@pytest.mark.tenth
 def test_the_command_says_a_line_each(
     tmp_path: Path,
     lines: tuple[RestitutionLine, ...],

@@ -56,6 +56,7 @@ def test_a_user_of_the_bar_gets_the_default() -> None:
     assert {**numerics, "tip": falling_block.usual_tip(scene)}.items() >= DEFAULT.items()
 
 
+@pytest.mark.tenth
 def test_the_default_converges_with_order_one(campaign_size: Callable[[int], int]) -> None:
     """Random numbers of elements: energy, impulse and beat err in proportion to the step, the duration by its share."""
     rng = np.random.default_rng(2011)
@@ -120,6 +121,7 @@ def test_a_penalty_lets_in_what_its_stiffness_says_and_the_default_nothing(defau
     assert default["penetration"] < 1e-12
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("mass", ["lumped", "redistributed"])
 def test_two_over_omega_max_is_the_limit_of_a_linear_bar(mass: str) -> None:
     """A bar pressed on for good, its contact always closed, is stable below it and not beyond."""

@@ -43,6 +43,7 @@ def relaxed(scheme: str, steps: int, ratio: float) -> dict[str, Any]:
     return impacts.relaxation_measure({"scheme": scheme, "steps": steps, "ratio": ratio})
 
 
+@pytest.mark.tenth
 def test_backward_euler_loses_restitution_at_every_relaxation_time() -> None:
     """Order one: half the error with twice the steps, however the relaxation time compares with them."""
     for ratio in (0.01, 1.0, 100.0):
@@ -51,6 +52,7 @@ def test_backward_euler_loses_restitution_at_every_relaxation_time() -> None:
         assert coarse["restitution"] / fine["restitution"] == pytest.approx(2.0, rel=0.2)
 
 
+@pytest.mark.tenth
 def test_the_default_follows_every_relaxation_time() -> None:
     """Order two from a hundredth of a step to a thousand steps, with no ratio that is stiff."""
     for ratio in (0.01, 1.0, 100.0, 1000.0):
@@ -142,6 +144,7 @@ def test_a_gap_of_rounding_is_none() -> None:
 # far radius
 
 
+@pytest.mark.tenth
 def test_an_echo_within_the_contact_changes_what_is_lost() -> None:
     """A far end at a tenth of the travel, with dashpots or without; the plan's place needs no dashpot."""
     near, bare = (impacts.far_radius_measure({"dashpots": d, "share": 0.1})["loss"] for d in (True, False))

@@ -110,6 +110,7 @@ def test_tables_where_one_belongs_are_shown_as_written(empty: Path, capsys: pyte
     assert "axes: [{ key = 'striker.mass' }] is not accepted; accepted: a table" in capsys.readouterr().err
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(
     ("changed", "said"),
     [
@@ -323,6 +324,7 @@ def test_values_out_of_their_range_are_refusals_by_name(empty: Path, capfd: pyte
     assert repr(columns["peak_force_N"][0]) in (where / "table.csv").read_text()
 
 
+@pytest.mark.tenth
 def test_what_did_not_converge_is_said_with_exit_3(empty: Path, capfd: pytest.CaptureFixture[str]) -> None:
     (empty / "hard.toml").write_text(
         'scene = "polymer-sphere"\ntolerance = 1e-5\n[axes]\n"numerics.steps" = [8]\n"striker.velocity" = [0.1]\n'
@@ -431,6 +433,7 @@ def test_a_spoiled_batch_is_asked_for_again(tmp_path: Path) -> None:
         assert np.array_equal(again.errors, table.errors, equal_nan=True)
 
 
+@pytest.mark.tenth
 def test_a_process_that_is_killed_is_replaced(tmp_path: Path) -> None:
     source, killed = tables(("ting",), axes={SPEED: {"log": [0.01, 1.0], "count": 40}}), list[int | None]()
 

@@ -332,6 +332,7 @@ def test_the_chart_is_reproducible(tmp_path: Path) -> None:
     assert [path.read_bytes() for path in first] == [path.read_bytes() for path in again]
 
 
+@pytest.mark.tenth
 def test_the_chart_says_where_its_axes_are_linear_and_what_its_shades_mean(tmp_path: Path) -> None:
     study = fe_contact.transfer(body("jankowski", k=1e7, xi=0.2), ("jankowski", "kelvin"), over={VELOCITY: (2.0,)})
     text = plot_transfer(study, tmp_path)[0].read_text(encoding="utf-8")

@@ -201,6 +201,7 @@ def test_every_section_asks_and_can_be_made_alone() -> None:
         assert part.command.startswith("fe-contact ")
 
 
+@pytest.mark.tenth
 def test_an_exact_answer_and_a_published_one_are_found_for_a_packaged_scene() -> None:
     """By its own settings: without them this one falls short of the default tolerance."""
     found = answered("bar")

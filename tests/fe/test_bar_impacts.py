@@ -157,6 +157,7 @@ def test_energy_is_accounted_for(impact: Result, bouncing: Result) -> None:
         assert abs(energy["numerical"]) < 0.01 * energy["in"]
 
 
+@pytest.mark.tenth
 def test_with_a_heavy_mass_behind_it_the_bar_is_a_spring() -> None:
     """Ten tonnes for every kilogram of the bar: the half sine of mass and spring, to a thousandth."""
     heavy = Scene.load("bar-impact", {"striker.mass": 1e5})

@@ -68,6 +68,7 @@ def apparent(height: float, nu: float) -> float:
     return float(force * height / (AREA * DEPTH))
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("nu", [0.3, 0.45])
 def test_bonded_faces_lead_from_youngs_to_the_confined_modulus_as_their_ends_fade(nu: float) -> None:
     """What the bonded ends add is their own: half as much in twice the length; likewise what the sides take."""
@@ -138,6 +139,7 @@ def test_the_bar_of_a_washer_covers(radius: float, nu: float, base: str) -> None
     assert found.force_error[0] < 1e-4 * found.force[0]
 
 
+@pytest.mark.tenth
 def test_the_bar_of_a_washer_with_a_narrow_hole_covers() -> None:
     """Displacements go as 1/r about it, over less than what an element elsewhere is long."""
     scene = Indenter(Punch(0.0184), polymer(0.49), Washer(1.2e-4, 0.0211, 0.004, "bonded"))

@@ -34,6 +34,7 @@ def approach(line_force: np.ndarray, nu: float) -> tuple[np.ndarray, np.ndarray]
     return 2.0 / math.pi * line_force * bracket, half_width
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.49])
 def test_a_wide_ring_is_a_cylinder_between_planes(nu: float) -> None:
     mean_radius = 1e4 * SECTION

@@ -85,6 +85,7 @@ def terms_of_a_over_r(nu: float) -> tuple[np.ndarray, float]:
     return found, float(np.abs(columns @ found - 1.0).max())
 
 
+@pytest.mark.tenth
 def test_what_finite_spheres_add_to_hertz_holds_a_logarithm_if_they_are_compressible() -> None:
     """Why the deviation is no plain a/R: a sphere's point load adds a logarithm that falls like (1 - 2 nu)^2."""
     loose, left = terms_of_a_over_r(0.2)

@@ -99,6 +99,7 @@ def test_the_stiffness_between_the_tabulated_ratios_is_exact_to_1e_10_and_none_o
         assert np.linalg.norm(found.stiffness(ratio) - direct) < 1e-10 * np.linalg.norm(direct)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(("steps", "share"), [(40, 0.5), (1024, 0.5), (8192, 0.5), (1024, 0.1), (160, 0.01)])
 def test_the_ratios_of_a_dashpot_are_known_from_the_first_step_on(steps: int, share: float) -> None:
     """Which is the shorter the more there are, and its ratio the larger: far beyond what the network itself has."""
@@ -298,6 +299,7 @@ def test_a_thick_layer_is_the_half_space_of_the_same_bulk_modulus() -> None:
         assert abs(other.value - one.value) <= one.error + other.error + 1.2 * share * one.value, key
 
 
+@pytest.mark.tenth
 def test_factorisations_do_not_grow_with_the_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     counts, factorise = {"factorizations": 0, "solves": 0}, linalg.splu
 

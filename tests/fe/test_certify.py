@@ -150,6 +150,7 @@ def test_the_error_bars_cost_less_than_two_more_of_the_finest_march(scene_of: Sc
     assert work.steps <= (1 + 1 / 2 + (work.marches - 2) / 4) * steps + 5 * work.marches
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(("name", "tolerance"), [("steel-ball", 1e-4), ("polymer-cone", 1e-4), ("polymer-layer", 1e-3)])
 def test_the_first_settings_meet_the_tolerance_and_hold_no_cause_far_below_it(name: str, tolerance: float) -> None:
     """Each takes between a two-hundredth and all of it: none is far dearer than was asked for."""
@@ -305,6 +306,7 @@ def test_a_body_too_soft_or_too_stiff_errs_by_no_more_than_is_said_of_it(
     assert np.linalg.norm(others - forces) <= said.errors["history_l2"] * np.linalg.norm(forces)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(("target", "velocity"), [("half_space", 0.02), ("layer", 0.02), ("layer", 0.023)])
 def test_a_ball_that_its_weight_hardly_lets_go_has_a_true_restitution(
     target: str, velocity: float, uncovered: Callable[..., dict[str, float]]

@@ -407,6 +407,7 @@ def test_plan_names_the_key_of_a_mesh_that_waves_cannot_have(capsys: pytest.Capt
     assert "numerics.tolerance, numerics.elements_per_contact: " in err
 
 
+@pytest.mark.tenth
 def test_plan_says_from_which_depth_a_material_softens(capsys: pytest.CaptureFixture[str]) -> None:
     """As a run would: there is a plan by laws all the same."""
     sets = ("--set", "target.material.hyperelastic=st_venant_kirchhoff", "--set", "striker.velocity=0.5")

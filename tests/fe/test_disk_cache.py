@@ -144,6 +144,7 @@ def test_a_killed_writer_leaves_whole_answers_or_none(disk: Path) -> None:
     assert not list(disk.iterdir()), "what was begun has gone too"
 
 
+@pytest.mark.tenth
 def test_processes_may_share_the_folder(disk: Path) -> None:
     writers = [subprocess.Popen([sys.executable, "-c", PROBE, "polymer-punch"], stdout=subprocess.PIPE, text=True)]
     writers += [subprocess.Popen([sys.executable, "-c", PROBE, "polymer-punch"], stdout=subprocess.PIPE, text=True)]
@@ -213,6 +214,7 @@ def test_another_processor_is_another_question(disk: Path, monkeypatch: pytest.M
     assert len(entries(disk)) == 2
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("way", ["environment", "option"])
 def test_it_is_off_with_one_key(way: str, disk: Path, empty: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     if way == "environment":

@@ -61,6 +61,7 @@ def moved(body: BodyWithMass, scheme: str, step: float, end: float, rho: float =
 # schemes
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("name", WAVE_SCHEMES.names)
 def test_the_order_of_a_scheme(name: str) -> None:
     """A damped oscillator against its matrix exponential, displacement and velocity."""
@@ -91,6 +92,7 @@ def test_the_order_does_not_depend_on_how_long_a_branch_remembers(name: str, tau
     assert found[-1] > ORDER[name] - 0.2
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("name", IMPLICIT)
 def test_the_order_is_kept_where_steps_are_doubled(name: str) -> None:
     body, end = oscillator(Relaxation(2.0), dashpot=0.3), 4.0
@@ -346,6 +348,7 @@ def test_every_enforcement_is_nearer_to_rigid_contact_than_the_raw_penalty(enfor
     assert deepest[enforcement] < share * deepest[penalty]
 
 
+@pytest.mark.tenth
 def test_a_light_bar_under_a_rigid_mass_is_a_spring() -> None:
     """Density to zero: half a sine of the mass on E A/L, contact for pi sqrt(m L/(E A)), by every mass matrix."""
     duration = math.pi * math.sqrt(2.0)

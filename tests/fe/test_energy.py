@@ -120,6 +120,7 @@ def test_a_body_let_go_turns_into_heat_what_it_stores_and_no_more(rate: float, t
     assert _crept(0.0, rate, time) == 0.0
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("name", ["polymer-sphere", "polymer-layer"])
 def test_what_a_scheme_of_order_one_loses_is_told(name: str) -> None:
     """Six to thirteen per cent in forty steps: every joule stands in its place, and none is left over."""

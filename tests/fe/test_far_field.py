@@ -122,6 +122,7 @@ def test_the_boundary_holds_the_point_force_exactly(nu: float) -> None:
     assert work > 0
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("nu", POISSON)
 def test_the_force_error_falls_at_least_with_the_square_of_the_far_radius(
     nu: float, settings_of: Callable[..., Numerics], hertz_strike: Callable[..., Strike]

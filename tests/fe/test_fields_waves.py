@@ -47,6 +47,7 @@ def test_at_the_turn_the_surface_is_where_the_ball_is_and_rests() -> None:
     assert fields.stress[axis, STRESSES.index("stress_zz")] == pytest.approx(-fields.pressure[axis], rel=0.05)
 
 
+@pytest.mark.tenth
 def test_the_stress_of_a_body_with_memory_carries_the_pressure_on_it() -> None:
     """Standard linear solid and a dashpot in parallel, on the way in: without their memory the stress would be less."""
     slow = {"law": "kelvin_voigt", "E": 1.8e6, "eta": 1.8e4, "nu": 0.45, "density": 1000.0}
@@ -57,6 +58,7 @@ def test_the_stress_of_a_body_with_memory_carries_the_pressure_on_it() -> None:
         np.testing.assert_allclose(normal, -fields.pressure[inside], atol=0.06 * fields.pressure.max())
 
 
+@pytest.mark.tenth
 def test_the_command_writes_the_velocity_too_and_rods_have_no_fields(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -54,6 +54,7 @@ def mesh_of(indenter: Indenter, depth: float = 0.05 * THICK, order: int = 2) -> 
     return make(indenter, np.array([contact(indenter, depth)]), numerics)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("nu", [-0.3, 0.0, 0.3, 0.49, 0.4999])
 @pytest.mark.parametrize("held", [False, True])
 def test_a_block_pressed_alike_all_over_is_strained_alike(nu: float, held: bool) -> None:
@@ -98,6 +99,7 @@ def _places(corners: Array, order: int) -> Array:
     return np.concatenate([corners[:1], *inner])
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("nu", [0.3, 0.4999])
 @pytest.mark.parametrize("kind", KINDS)
 def test_between_held_ends_it_is_in_plane_strain(kind: str, nu: float) -> None:
@@ -179,6 +181,7 @@ def test_a_body_too_large_for_memory_is_refused_by_name() -> None:
         free_ends(body("ring", length=3.0, radius=100.0), 0.3 * THICK)
 
 
+@pytest.mark.tenth
 def test_a_plan_tells_what_is_measured_beside_the_estimate(capsys: pytest.CaptureFixture[str]) -> None:
     """At the depth that it expects, at small strains, whatever the scene's kinematics; without a key."""
     assert main(["plan", "rod-in-ring-finite", "--tolerance", "0.1", "--measure", "--json"]) == 0

@@ -158,6 +158,7 @@ def test_two_slow_balls_are_those_without_inertia(uncovered: Callable[..., dict[
     assert not uncovered(swapped, waves)
 
 
+@pytest.mark.tenth
 def test_two_equal_balls_are_one_on_a_rigid_plane_with_half_the_approach() -> None:
     both, alone = curve_of(pair(10.0)), curve_of(ball(5.0))
     twice = {"peak_depth": 2.0, "peak_force": 1.0, "duration": 1.0, "impulse": 1.0, "restitution": 1.0}
@@ -384,6 +385,7 @@ def test_fields_of_two_bodies_are_refused_before_anything_is_computed(capsys: py
     assert "rigid" in capsys.readouterr().err
 
 
+@pytest.mark.tenth
 def test_a_ball_that_rings_as_it_leaves_ends_its_contact_within_the_bar() -> None:
     """Its last forces fall faster than before, within the last step: steps of 1/64 and 1/32 err alike by chance."""
     material = {"law": "prony", "E_inf": 1.61e6, "E": [4.64e4], "tau": [4.53e-3], "nu": 0.447, "density": 368.7}

@@ -55,6 +55,7 @@ def remembered(place: Array, growth: float = 1.0) -> State:
     return np.stack([high, r * high, z * high, r * z * high]), high
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("growth", [1.003, 1.1, 1.6])
 def test_what_flows_inward_is_what_was_further_out(growth: float) -> None:
     """The error falls as the third power of the elements."""

@@ -62,6 +62,7 @@ def test_a_body_weighs_what_its_volume_does_and_waves_have_their_speeds() -> Non
         assert pressure**2 == pytest.approx(young * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson)))
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(("poisson", "young"), [(0.0, 7e10), (0.45, 3e9)])
 def test_the_ball_loses_what_its_force_radiates(poisson: float, young: float) -> None:
     """Lamb's point force, an integral, against the momentum of the ball and the energy left in the mesh."""
@@ -78,6 +79,7 @@ def test_the_ball_loses_what_its_force_radiates(poisson: float, young: float) ->
     assert abs(march.energy["numerical"]) < 1e-3 * march.energy["radiated"]
 
 
+@pytest.mark.tenth
 def test_the_share_grows_as_the_speed_to_three_fifths() -> None:
     losses = []
     for velocity in (0.03, 0.3):

@@ -59,6 +59,7 @@ def viscoelastic(contact_time: float, share: float = 0.3, ratio: float = 2.5) ->
 # Hertz
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("case", range(4))
 def test_an_elastic_impact_is_hertzs(case: int, scene_of: Scenes) -> None:
     nu, young = float(RNG.uniform(0, 0.4999)), float(10 ** RNG.uniform(4, 11))

@@ -65,6 +65,7 @@ def test_a_bulk_modulus_that_takes_all_digits_is_refused(empty: Path, capsys: py
         assert said in err
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("name", ["rod", "concrete-pole", "bar-impact"])
 def test_waves_along_one_line_know_no_nu(name: str) -> None:
     """Their mesh is a line; a rod's dent is the half-space's closed form, softer as E* falls."""

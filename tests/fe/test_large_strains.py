@@ -239,6 +239,7 @@ def test_a_contact_guessed_wider_than_the_striker_is_named() -> None:
         balanced(small, np.zeros(small.body.core.size), 0.01, 500.0, touching=everywhere)
 
 
+@pytest.mark.tenth
 def test_a_material_that_softens_ends_where_its_waves_do() -> None:
     """St Venant and Kirchhoff's energy, confined, has no slope of the stress at the stretch 1/sqrt(3).
 

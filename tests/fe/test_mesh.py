@@ -144,6 +144,7 @@ def test_a_layer_outside_its_ranges_is_named(place: int, value: float, name: str
         meshes.layer(*numbers)
 
 
+@pytest.mark.tenth
 def test_a_worker_process_makes_the_same_mesh() -> None:
     asked = partial(meshes.half_space, 2.0, 12.0)
     for _, made in measured({"one": asked, "another": asked}, jobs=2):

@@ -59,6 +59,7 @@ def followed(steps: int) -> np.ndarray:
     return found
 
 
+@pytest.mark.tenth
 def test_the_relaxed_gap_is_the_stress_that_would_close_it() -> None:
     """Where the surface was touched and the edge has left; of order two in the step."""
     left = edge(END) + 0.05

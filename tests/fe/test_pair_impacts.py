@@ -191,6 +191,7 @@ def work(surface: Deformable, width: float) -> float:
     return float(load @ operator.response[: load.size] @ load) / float(pressure.sum()) ** 2
 
 
+@pytest.mark.tenth
 def test_action_is_reaction(uncovered: Callable[..., dict[str, float]]) -> None:
     """The smaller body struck by the larger one, both free: only the names change."""
     soft, stiff = Material(Relaxation(YOUNG, (YOUNG,), (3e-3,)), 0.3), Material(Relaxation(3.0 * YOUNG), 0.45)
@@ -202,6 +203,7 @@ def test_action_is_reaction(uncovered: Callable[..., dict[str, float]]) -> None:
     assert first.work["factorizations"] == 4, "two bodies on two meshes each, whatever the steps"
 
 
+@pytest.mark.tenth
 def test_the_pressure_between_meshes_that_do_not_match_is_smooth() -> None:
     """Nylon and rubber: Hertz's half ellipse of the same force and width, to two per cent of its peak but at its edge.
 

@@ -88,6 +88,7 @@ def struck(speed: float, numerics: Table, nu: float = 0.3, hardening: float = 0.
     return fe_contact.run(scene, numerics=numerics)
 
 
+@pytest.mark.tenth
 def test_before_it_yields_it_is_elastic() -> None:
     found = pressed([0.3 * yield_depth(0.3), 0.9 * yield_depth(0.3)], COARSE)
     hertz = 4.0 / 3.0 * modulus(0.3) * math.sqrt(RADIUS) * found.depth**1.5
@@ -387,6 +388,7 @@ def test_a_loading_ends_by_name_where_its_iterations_are_spent_and_tells_its_pro
     assert 20 < loading.presser.counts.iterations <= 20 + MOST_ITERATIONS
 
 
+@pytest.mark.tenth
 def test_a_punch_yields_with_the_coarsest_settings_and_fewer_elements_are_refused() -> None:
     """The work of a rim's elastic contact, F = 2 E* a depth, where nothing but its very rim yields."""
     depth, punch = [4e-6], {"shape": "punch", "radius": RADIUS}

@@ -409,6 +409,7 @@ def test_a_body_is_meshed_by_the_contact_that_is_expected_of_any_size() -> None:
     assert meshes[0] == meshes[1]
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("steps", [8, 16])
 def test_steps_too_long_for_the_rebound_are_named(steps: int) -> None:
     """A step that leads the striker farther back than the first touch, or from the turn to separation at once."""

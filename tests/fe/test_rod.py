@@ -165,6 +165,7 @@ def test_a_rod_without_mass_at_its_struck_end_has_all_of_it_elsewhere(name: str)
     assert body.inertia.sum() == pytest.approx(scene.reduced_mass + rod.rod_mass(scene) - held)
 
 
+@pytest.mark.tenth
 def test_a_weight_pulls_until_the_very_end() -> None:
     """Contact ends within a step: what left at that step's end had fallen on, and no change of steps told."""
     striker = {"shape": "sphere", "radius": 2.3e-3, "mass": 4.6e-4, "velocity": 6.7e-3}
@@ -179,6 +180,7 @@ def test_a_weight_pulls_until_the_very_end() -> None:
         assert found.error < 3e-4
 
 
+@pytest.mark.tenth
 def test_a_heavy_ball_meets_the_first_front_long_before_it_turns() -> None:
     """Its dent presses as hard as a front after a hundredth of the transit: elements at first are as short as that."""
     striker = {"shape": "sphere", "radius": 6.7e-3, "mass": 0.05, "velocity": 0.22}

@@ -53,6 +53,7 @@ def test_every_bar_covers(
         assert not uncovered(found, exact(seed)), seed
 
 
+@pytest.mark.tenth
 def test_two_meshes_that_agree_by_chance_where_the_path_turns_are_not_believed(
     uncovered: Callable[..., dict[str, float]],
 ) -> None:

@@ -39,6 +39,7 @@ def test_force_and_contact_radius_under_steep_profiles(shape: Shape) -> None:
     np.testing.assert_allclose(found.contact_radius, radius, rtol=2e-3)
 
 
+@pytest.mark.tenth
 def test_contact_radius_of_an_impact_under_a_steep_profile() -> None:
     """Against Ting on the layer's load curve, from shortly after touch, where r^8 opens like t^(1/8), to the end."""
     scene = Scene.load("polymer-layer", {"striker.velocity": 0.05})

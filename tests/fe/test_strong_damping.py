@@ -51,6 +51,7 @@ def exact(campaign_size: Callable[[int], int]) -> list[lumped.Result]:
     return [lumped.simulate(mdr.of(scene), scene, tolerance=REFERENCE_TOLERANCE) for scene in scenes]
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("shape", ["sphere", "cone"])
 def test_a_dashpot_alone_stops_the_striker_and_its_steps_end_where_it_rests(shape: str) -> None:
     """Not at the end of the scene's time, 800 times as late as the peak."""
@@ -127,6 +128,7 @@ def test_few_steps_do_not_hide_what_the_mesh_of_a_damped_ring_changes(
     assert not uncovered(found, lumped.simulate(ting.of(scene), scene, REFERENCE_TOLERANCE))
 
 
+@pytest.mark.tenth
 def test_two_meshes_of_a_damped_layer_that_end_alike_by_chance_are_not_believed() -> None:
     """Of a jelly of 1 Pa, met in a random sweep: the bar of the duration holds its error, and is no ten times wider."""
     striker = {"shape": "sphere", "radius": 0.01, "mass": 2e-8, "velocity": 0.0259022}
@@ -149,6 +151,7 @@ def roller(number: int) -> lumped.Scene:
     return lumped.Scene.from_dict({"name": f"roller-{number}", "striker": striker, "target": target})
 
 
+@pytest.mark.tenth
 def test_a_layer_s_dashpot_whose_force_jitters_from_node_to_node_asks_for_no_finer_mesh() -> None:
     """Read through fewer of its steps the force keeps within the band on the coarse mesh, at a seventh of the cost."""
     scene = lumped.Scene.load(
@@ -172,6 +175,7 @@ def test_bars_that_miss_by_the_ripple_of_an_edge_are_judged_again_where_it_meets
     assert not uncovered(found, lumped.simulate(ting.of(scene), scene, REFERENCE_TOLERANCE))
 
 
+@pytest.mark.tenth
 def test_bars_that_meet_the_tolerance_stand_as_they_were_judged(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(runs, "calmest_at_corners", lambda curve, corners: pytest.fail("judged again"))
     assert fe_contact.run(lumped.Scene.load("polymer-layer"), 1e-2).converged
@@ -204,6 +208,7 @@ def test_a_first_step_that_ends_above_the_first_point_of_a_mesh_that_stays_is_ma
         assert abs(found.quantities[name].value - exact[name].value) <= found.quantities[name].error, name
 
 
+@pytest.mark.tenth
 def test_a_rod_on_a_dashpot_is_known_by_half_as_many_steps(uncovered: Callable[..., dict[str, float]]) -> None:
     """It presses at touch by half of its peak, which polynomials from nothing to the first step would miss by as much:
     the bar of the history fell with the first power of the steps, and asked for 464 of them and a finer mesh.

@@ -90,6 +90,7 @@ def test_every_front_door_has_one_thread(monkeypatch: pytest.MonkeyPatch) -> Non
     assert blas_threads() == {2}
 
 
+@pytest.mark.tenth
 def test_a_process_that_is_started_has_one_thread_and_loads_no_more_than_its_call() -> None:
     heavy = "sorted({'scipy.linalg', 'threadpoolctl', 'matplotlib', 'skfem'} & {*__import__('sys').modules})"
     calls = {"loaded": partial(eval, heavy), "limits": partial(os.getenv, "OPENBLAS_NUM_THREADS")}

@@ -97,6 +97,7 @@ def _same(mine: Quantity, other: Quantity, unit: float, bars: float) -> bool:
     return value and abs(other.error / unit - mine.error) <= bars * mine.error + ALIKE * abs(mine.value)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("name", [*SCENES, *(pytest.param(name, marks=pytest.mark.tenth) for name in LONG)])
 def test_finite_elements_know_no_unit(name: str) -> None:
     ours, theirs = (fe_contact.run(scene, OWN.get(name, 1e-2)) for scene in both(name))

@@ -161,6 +161,7 @@ def test_refined_settings_are_whole_where_they_count_and_never_out_of_range() ->
     assert all(getattr(finer, key) <= value for key, value in most.items())
 
 
+@pytest.mark.tenth
 def test_twice_the_steps_take_one_march_more() -> None:
     scene = Scene.load("steel-ball-waves")
     numerics = half_space.plan(scene, {"elements_per_contact": 3.0, "steps": 48, "tolerance": 0.05}).numerics
@@ -195,6 +196,7 @@ def test_a_finer_surface_leaves_the_body_as_coarse(kind: str) -> None:
     assert two.p.shape[1] < 2.5 * one.p.shape[1]
 
 
+@pytest.mark.tenth
 def test_counted_factorisations_are_those_of_every_length_of_step(monkeypatch: pytest.MonkeyPatch) -> None:
     """Counted from outside; a body that nothing moves yet needs none of its mass."""
     made, factorise = [0], linalg.splu
@@ -225,6 +227,7 @@ def test_every_mesh_that_is_accepted_is_judged_by_one_that_can_be_made(order: in
         meshes.half_space_for_waves(other.elements_per_contact, 0.5, 2.0)
 
 
+@pytest.mark.tenth
 def test_a_mesh_of_few_nodes_is_judged_by_one_that_does_not_err_alike_by_chance() -> None:
     """Ten or twelve of them along the contact radius: against one of 36, half as many miss the error."""
     scene = Scene.load("steel-ball-waves")

@@ -58,6 +58,7 @@ def test_a_contact_over_in_fewer_steps_than_show_it_has_a_name() -> None:
         certify(Strike.of(scene), scene.geometry, numerics.varied(contact_time=1e12 * numerics.contact_time))
 
 
+@pytest.mark.tenth
 def test_a_finer_body_that_is_refused_leaves_what_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
     scene, given = Scene.load("steel-ball"), {"tolerance": 1e-5, "steps": 16, "order": 2}
     monkeypatch.setattr(reference.Statics, "rounds", 0)
@@ -261,6 +262,7 @@ def test_plan_says_what_waves_take_and_what_is_refused(capsys: pytest.CaptureFix
     assert "cure: " in told.err
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(("name", "most"), [("polymer-o-ring", 3.5), ("two-finite-spheres", 2.0)])
 def test_the_coming_contact_is_guessed_so_well_that_few_sets_are_tried(name: str, most: float) -> None:
     """Growing and receding, on one side of the axis and on both of a crown."""
@@ -279,6 +281,7 @@ def test_how_often_was_refined_is_said_where_it_was_not_enough(monkeypatch: pyte
     assert "; refined 1 times, which was not enough; a tolerance of " in found.message
 
 
+@pytest.mark.tenth
 def test_steps_that_better_nothing_are_not_halved_for_ever() -> None:
     """Under a usual penalty the force of a bar's impact chatters, whatever the steps: two rounds show it."""
     given = {"scheme": "generalised_alpha", "mass": "redistributed", "enforcement": "penalty", "rho": 0.5}

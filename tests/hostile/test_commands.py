@@ -51,6 +51,7 @@ def test_any_command_line_ends_with_one_line_a_fault(
     assert not wrong, "\n".join(wrong)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(
     "command", ["run", "compare", "tradeoff", "indent", "fit", "ptmd", "pound", "paper", "ring", "table1"]
 )

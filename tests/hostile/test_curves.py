@@ -66,6 +66,7 @@ def spoiled(rng: random.Random) -> bytes:
     return content[: rng.randrange(len(content) + 1)] if bare < 0.1 else content
 
 
+@pytest.mark.tenth
 def test_a_spoiled_curve_is_fitted_or_refused_by_name(
     tmp_path: Path,
     hundredth: Callable[[int], int],

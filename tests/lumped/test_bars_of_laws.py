@@ -181,6 +181,7 @@ def test_the_bar_of_a_force_is_that_of_its_largest_error() -> None:
     assert 0.7 < coarse.force_error / (half_widths.SAFETY * apart) < 1.1
 
 
+@pytest.mark.tenth
 def test_a_force_that_ends_upright_is_known_to_its_end() -> None:
     """Below exponent one its slope over the depth is infinite there: a depth beyond it by rounding has none."""
     rng = np.random.default_rng(0)
@@ -385,6 +386,7 @@ def test_of_equal_peaks_the_first_counts() -> None:
         assert 2.0 * found["peak_time"].value == pytest.approx(found["duration"].value, rel=1e-6)
 
 
+@pytest.mark.tenth
 def test_an_impulse_cut_off_is_known_to_rounding_and_no_better(uncovered: Callable[..., dict[str, float]]) -> None:
     values = {"k": 32144.44417825987, "A": 0.003044490798786051, "exit": "force"}
     scene = Scene(

@@ -177,6 +177,7 @@ def test_a_bend_that_is_none_changes_nothing_on_a_layer(layer: PointLayer) -> No
         assert ours == pytest.approx(theirs, rel=3e-8)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("shape", [SphereCone(RADIUS, 19.7), RoundedPunch(1e-3, RADIUS), PLATEAU], ids=lambda s: s.name)
 def test_on_a_layer_a_bend_is_met_from_both_sides(shape: Shape) -> None:
     """Radius and depth are inverse, the edge meets the surface with a flat end's stiffness, and force is work's slope;

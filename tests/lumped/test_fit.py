@@ -132,6 +132,7 @@ def test_hertz_is_fitted_by_its_modulus_or_its_stiffness() -> None:
     assert by_stiffness.values["k"] == pytest.approx(4.0 / 3.0 * 1.05e11 * np.sqrt(1.984375e-3), rel=1e-5)
 
 
+@pytest.mark.tenth
 def test_a_clock_that_starts_before_the_touch() -> None:
     truth = history("jankowski", **TRUTHS["jankowski"])
     time = np.linspace(0.0, 1.3 * truth.time[-1], 801)
@@ -193,6 +194,7 @@ def test_covariance_is_that_of_many_fits(campaign_size: Callable[[int], int]) ->
     assert np.sign(claimed[0, 1]) == np.sign(scatter[0, 1])
 
 
+@pytest.mark.tenth
 def test_stiffness_and_exponent_hang_together_and_the_force_does_not() -> None:
     truth = history("jankowski", **TRUTHS["jankowski"])
     found = fit(noisy(truth, 0.01, np.random.default_rng(1)), "jankowski", BODY, ("k", "alpha", "xi"))
@@ -216,6 +218,7 @@ def test_at_equal_peak_the_papers_steel_ball_needs_another_ratio() -> None:
     assert found.parameters["R1"].low is None
 
 
+@pytest.mark.tenth
 def test_the_peak_is_held_by_the_stiffness_and_the_rest_is_least_squares() -> None:
     curve = history("jankowski", **TRUTHS["jankowski"])
     free, held = fit(curve, "kelvin", BODY), fit(curve, "kelvin", BODY, peak=True)
@@ -278,6 +281,7 @@ def test_a_force_beyond_every_material_is_searched_within_its_range() -> None:
         fit(curve, "mdr", Scene.load("steel-ball"))
 
 
+@pytest.mark.tenth
 def test_searches_that_lead_away_from_the_curve_end_soon_and_say_what_to_free() -> None:
     """A half sine of a soft body, and a steel ball's E0 held: no relaxation softens a solid below it.
 
@@ -328,6 +332,7 @@ def test_one_fit_and_the_ranking_agree_on_what_is_left(deviation: float, polymer
         assert not (law == "ting" and left.of_the_law)
 
 
+@pytest.mark.tenth
 def test_the_normalized_error_does_not_follow_the_clock() -> None:
     """A record that begins before the touch, on two clocks: the same points, the same norm of what is left of them."""
     own = history("jankowski", **TRUTHS["jankowski"])
@@ -386,6 +391,7 @@ def test_curves_that_tell_nothing_are_named(time: list[float], force: list[float
         fit(Curve(np.array(time), np.array(force)), "jankowski", BODY)
 
 
+@pytest.mark.tenth
 def test_an_interval_that_says_nothing_is_none(campaign_size: Callable[..., int]) -> None:
     """A contact of 50 us tells of a solid that relaxes within 14 ms the glassy modulus: E0 may be any share of it."""
     scene = Scene.load("steel-ball-sls")

@@ -272,6 +272,7 @@ def units(printed: str, value: float) -> float:
     return abs(float(printed) - value) * 10.0 ** len(printed.split(".")[1])
 
 
+@pytest.mark.tenth
 def test_the_error_map_is_reproduced_to_its_printed_digits() -> None:
     points = error_map(STIFFENINGS, TAUS)
     assert len(points) == len(MAP) == 54
@@ -331,6 +332,7 @@ def test_without_clipping_the_law_pulls_until_the_depth_is_zero(
 # Ends.
 
 
+@pytest.mark.tenth
 def test_an_end_lost_in_rounding_is_named() -> None:
     """So much damping that the depth is gained in a millionth of the contact and lost in a billion of them."""
     young = {"law": "kelvin_voigt", "E": 2501.105958672859, "eta": 19064076.196947463}

@@ -78,6 +78,7 @@ def test_a_fixed_area_is_a_linear_oscillator(
         assert np.abs(apart).max() <= 1e-6 * rows.force.max()
 
 
+@pytest.mark.tenth
 def test_ting_and_the_springs_agree_under_blunt_profiles_on_a_dashpot(
     impact: Build, campaign_size: Callable[[int], int]
 ) -> None:

@@ -247,6 +247,7 @@ def test_what_no_curve_can_tell_apart_is_refused_by_name(
         identify(curves, table, [*free, *others])
 
 
+@pytest.mark.tenth
 def test_an_exponent_is_told_beside_its_factor() -> None:
     """F = factor depth^(1 + 1/n): both by their short names, from a first guess far away."""
     rng = np.random.default_rng(SEED + 1)
@@ -367,6 +368,7 @@ def test_a_sample_says_what_the_profile_says(tmp_path: Path) -> None:
     assert np.all(curve.band[1] <= curve.predicted[1])
 
 
+@pytest.mark.tenth
 def test_a_reference_corrects_the_law_where_it_errs() -> None:
     """The truth knows a gravity that the law of the search does not: with a reference that knows it the search ends at
     the truth, and a reference that errs within its bar moves it by no more than is said.
@@ -561,6 +563,7 @@ def test_an_effect_larger_than_the_intervals_is_named(velocity: float, named: bo
     assert any(one.endswith("cure for target inertia: --method fe --set model.inertia=true") for one in said) == named
 
 
+@pytest.mark.tenth
 def test_a_spring_that_the_curves_do_not_need_is_named() -> None:
     """A fluid of one branch taken for a solid."""
     rng = np.random.default_rng(SEED)

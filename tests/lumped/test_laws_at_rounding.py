@@ -40,6 +40,7 @@ def test_marches_of_springs_go_on_while_the_history_errs(monkeypatch: pytest.Mon
     assert found.numerics["parts"] > 4, "more than the first march that has a bar"
 
 
+@pytest.mark.tenth
 def test_a_striker_that_settles_takes_few_trials_a_turn() -> None:
     """Its turns are known to ever fewer digits: no trial goes on for what is rounding."""
     scene = Scene.load("ball-bouncing", {"motion.impacts": 40, "motion.end_time": 5.0})

@@ -236,6 +236,7 @@ def test_constant_bulk_modulus_is_charged_as_published() -> None:
         assert found == pytest.approx(effect, abs=6e-4)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("damped", [False, True])
 def test_constant_bulk_modulus_is_charged_as_the_hereditary_law_has_it(damped: bool) -> None:
     """Relaxation from a hundredth of the contact time to a hundred; what falls less in it may push harder."""

@@ -178,6 +178,7 @@ def printed_peak(values: list[str], mass: float, velocity: float) -> tuple[float
     return max(forces), end, -float(run.y[1, -1]) / velocity
 
 
+@pytest.mark.tenth
 def test_a_law_that_remembers_has_a_stand_in_and_its_departures(monkeypatch: pytest.MonkeyPatch) -> None:
     """The line, integrated anew at every velocity against the exact impact, errs by what the table beside it says."""
     monkeypatch.setattr(opensees, "STAND_INS", {"hertzdamp": opensees.STAND_INS["hertzdamp"]})

@@ -245,6 +245,7 @@ COMPANY: list[tuple[str, dict[str, object]]] = [
 ]  # fmt: skip
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("law", [ting, correspondence])
 def test_an_impact_is_the_same_to_the_bit_in_any_company(law: ModuleType) -> None:
     scenes = [Scene.load(name, keys) for name, keys in COMPANY]

@@ -226,6 +226,7 @@ def test_the_published_stop_is_struck_as_an_independent_integration_says() -> No
 # limits
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("name", LAWS)
 @pytest.mark.parametrize("right", [2e4, None])
 def test_one_storey_on_no_columns_is_the_impact_of_its_law(name: str, right: float | None) -> None:
@@ -328,6 +329,7 @@ def test_a_grazing_contact_is_found_and_a_near_miss_is_none(apart: float) -> Non
         assert len(found) == count
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("memory", ["recovering", "reset", "continuous"])
 def test_no_contact_begins_before_the_storeys_meet(memory: str) -> None:
     """Struck again while the dent creeps back; and where all but rounding of it has crept back on the way."""
@@ -387,6 +389,7 @@ def random_case(rng: np.random.Generator) -> tuple[PoundingFrames, str, GroundMo
     return PoundingFrames(left, right, gaps), str(rng.choice(list(LAWS))), grounds[int(rng.integers(3))]
 
 
+@pytest.mark.tenth
 def test_energy_balances_in_random_frames(campaign_size: Callable[..., int]) -> None:
     rng, touched = np.random.default_rng(16), 0
     for _ in range(campaign_size(600, least=6, most=20)):
@@ -449,6 +452,7 @@ def test_a_contact_passes_on_the_momentum_that_both_masses_change_by(
 # work
 
 
+@pytest.mark.tenth
 def test_the_work_of_contacts_grows_with_contacts_and_not_with_time() -> None:
     short, long = (simulate(WALL, laws_of(WALL, "hertz"), Sine(2.0, 1.5, 3.0), until) for until in (3.0, 8.0))
     ended = [contact for contact in long.contacts if contact.start < 3.0]
@@ -457,6 +461,7 @@ def test_the_work_of_contacts_grows_with_contacts_and_not_with_time() -> None:
     assert short.pressed_steps <= 60 * len(short.contacts)
 
 
+@pytest.mark.tenth
 def test_finer_steps_take_little_more_and_change_little() -> None:
     coarse, fine = (simulate(TWO, laws_of(TWO, "hertz"), shaking(), 2.5, tolerance) for tolerance in (1e-6, 1e-12))
     assert coarse.pressed_steps < fine.pressed_steps < 10 * coarse.pressed_steps

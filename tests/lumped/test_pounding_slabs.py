@@ -75,6 +75,7 @@ def test_the_echoes_begin_with_the_plateau_of_two_rods() -> None:
     assert echoes(1e13)["peak_force"] == pytest.approx(plateau, rel=1e-9)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("k", [3e8, 3e9])
 def test_two_rods_collide_as_their_echoes_say_within_the_bars(k: float) -> None:
     """Soft and hard beside the rods, whose EA/length are 0.8e9 and 0.7e9 N/m."""

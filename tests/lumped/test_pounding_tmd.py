@@ -397,6 +397,7 @@ def independent(system: PoundingDamper, start: Start, end: float) -> tuple[list[
     return sorted([*found, *opened.values()], key=lambda contact: contact[1]), y[:4]
 
 
+@pytest.mark.tenth
 def test_a_graze_that_begins_below_zero_by_rounding_is_followed() -> None:
     result = simulate(*GRAZING, 1.5, 0.5)
     contacts, _ = independent(*GRAZING, 1.5)
@@ -570,11 +571,13 @@ def test_a_dent_creeps_back_with_the_retardation_time() -> None:
         assert met == pytest.approx(left * np.exp(-between / RETARDATION), rel=1e-9)
 
 
+@pytest.mark.tenth
 def test_a_reset_ring_is_met_at_its_undeformed_place_and_a_running_one_deeper() -> None:
     assert [met for _, met, _ in dents(Memory.RESET)] == pytest.approx(np.zeros(len(dents(Memory.RESET))), abs=1e-13)
     assert all(met > 2e-4 for _, met, _ in dents(Memory.CONTINUOUS))
 
 
+@pytest.mark.tenth
 def test_only_a_continuous_memory_lets_tension_work_on_the_ring() -> None:
     cut = {memory: simulate(with_ring(lining(memory=memory)), BOTH, 2.0).energy.cut_tension for memory in Memory}
     assert cut[Memory.RECOVERING] == cut[Memory.RESET] == 0.0

@@ -114,6 +114,7 @@ def test_moduli_of_no_passive_material_are_not_fitted_in_silence() -> None:
     assert fit.max_error > 0.3
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(
     ("alpha", "ratio", "tolerance"), [(0.1, 5.0, 1e-4), (0.5, 10.0, 1e-6), (0.8, 1.5, 1e-7), (0.3, 1e4, 1e-5)]
 )
@@ -129,6 +130,7 @@ def test_stated_error_of_the_fractional_solid_covers_the_true_one(alpha: float, 
     assert (series.glassy, series.relaxed) == pytest.approx((ratio, 1.0), rel=tolerance)
 
 
+@pytest.mark.tenth
 def test_stated_errors_cover_the_true_ones_of_random_fractional_solids() -> None:
     rng = np.random.default_rng(11)
     for _ in range(10):
@@ -196,6 +198,7 @@ def test_what_does_not_decay_is_not_reached() -> None:
         of_operational(lambda s: 1.0 + s / (s + 1.0) ** 2, (1e-2, 10.0))
 
 
+@pytest.mark.tenth
 def test_fractional_solid_is_a_material_of_every_law() -> None:
     material = {"law": "fractional_zener", "E_inf": 0.6e6, "E_glass": 6e6, "tau": 0.01, "alpha": 0.4, "nu": 0.45}
     scene = Scene.load("polymer-sphere", {"target.material": material})
@@ -322,6 +325,7 @@ def test_arguments_out_of_range_are_refused() -> None:
             of_samples(times, moduli)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(
     ("values", "named"),
     [

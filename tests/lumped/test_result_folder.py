@@ -210,6 +210,7 @@ for _ in range(rounds):
 """
 
 
+@pytest.mark.tenth
 def test_eight_runs_into_one_folder_leave_one_of_them_whole(
     tmp_path: Path, campaign_size: Callable[[int], int]
 ) -> None:

@@ -267,6 +267,7 @@ def test_the_greatest_force_is_that_behind_the_echo_wherever_it_rounds_to() -> N
         assert value(run(scene), "peak_force") == pytest.approx(known, rel=1e-9)
 
 
+@pytest.mark.tenth
 def test_the_bars_of_a_pointed_rod_are_no_accident_of_equal_steps(uncovered: Callable[..., dict[str, float]]) -> None:
     """Where no tolerance bound a step the two marches were one, and every bar was rounding."""
     material = {"law": "elastic", "E": 3295614110.4212503, "nu": 0.3, "density": 1719.9281559131443}

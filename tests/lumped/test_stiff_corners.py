@@ -86,6 +86,7 @@ def test_a_weight_far_above_the_impact_is_followed_to_its_end() -> None:
     assert result.quantities["impulse"].value == pytest.approx(impulse, rel=1e-4)
 
 
+@pytest.mark.tenth
 def test_a_weight_at_rest_is_followed_until_any_time() -> None:
     """Where accelerations are rounding, pieces are as long as they like: work grows with the time's logarithm."""
     solid, layer = Material(Relaxation(6e5, (1.2e6,), (6.7e-3,)), 0.45), Layer(2e-3, "bonded")

@@ -24,6 +24,7 @@ def value(result: Result, name: str) -> float:
     return found
 
 
+@pytest.mark.tenth
 def test_restitution_has_a_minimum_over_the_relaxation_time(impact: Build) -> None:
     e = [value(run("mdr", impact(0.5, (0.5,), (tau,))), "restitution") for tau in np.logspace(-2.5, 2, 12)]
     lowest = int(np.argmin(e))
@@ -88,6 +89,7 @@ def test_a_fluid_stops_the_striker_in_its_own_time(law: str, time: float, end: f
     assert run(law, impact(0.0, (1.0,), (time,), end_time=end), 1e-4).message == why.value
 
 
+@pytest.mark.tenth
 def test_a_faint_spring_turns_what_a_fluid_has_nearly_stopped(impact: Build) -> None:
     """A millionth of the stiffness lasts: it sends the striker back, slowly."""
     scene = impact(0.0, (1.0, 1e-6), (0.05, 1e7), end_time=1e5)
