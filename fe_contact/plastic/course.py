@@ -18,8 +18,8 @@ import numpy as np
 from fe_contact.assembly.forms import Array, check_compressible
 from fe_contact.budget.refine import Growth, missing
 from fe_contact.budget.variation import SAFETY
-from fe_contact.plastic.ground import Ground, Sizes, ground_of, yielding_of
-from fe_contact.plastic.path import ELASTIC_RATIO, Presser, Station
+from fe_contact.plastic.ground import CORE, WIDEST, Ground, Sizes, ground_of, yielding_of
+from fe_contact.plastic.path import ELASTIC_RATIO, PlasticZoneWide, Presser, Station
 from fe_contact.progress import Count, Counted, Progress, uncounted
 from fe_contact.settings import DEFAULT_TOLERANCE, RANGES, Given, Numerics, tolerance_of
 from lumped.errors import BadInput, Fault
@@ -136,7 +136,7 @@ def smooth(x: Array, y: Array, spacing: float) -> Callable[[Array], Array]:
 @dataclass(frozen=True)
 class Course:
     """What is pressed into what, and how deep; m, Pa. ``first``, ``firm``: depths before which nothing yields, and
-    hardly anything.
+    hardly anything; ``core``: up to so many contact radii away it may.
     """
 
     profile: Shape
@@ -147,6 +147,7 @@ class Course:
     first: float
     firm: float
     deepest: float
+    core: float = CORE
 
     @classmethod
     def of(cls, scene: Scene | Indenter, shallowest: float, deepest: float) -> Course:
@@ -210,6 +211,7 @@ class Course:
             elements=numerics.elements_per_contact,
             order=numerics.order,
             far_radius=numerics.far_radius,
+            core=self.core,
             rim=self.rim,
             cut=cut,
         )
@@ -223,6 +225,16 @@ class Course:
         after = _spread(before[-1], end, 1.0 + STRIDE / steps) if end > before[-1] else before[-1:]
         found = np.concatenate([before, after[1:]])
         return found if found.size > FEWEST else np.geomspace(self.first, end, FEWEST + 1)
+
+
+def within_core(course: Course, told: Callable[[Course], Told]) -> Told:
+    """What is ``told`` of a course, or of one with a wider core where flow leaves it. Raises PlasticZoneWide."""
+    try:
+        return told(course)
+    except PlasticZoneWide:
+        if course.core >= WIDEST:
+            raise
+    return within_core(replace(course, core=2.0 * course.core), told)
 
 
 def _spread(start: float, end: float, ratio: float) -> Array:

@@ -1,19 +1,20 @@
 """Fields of a half-space that yields at the largest force, and the indentation left: its finest mesh once more.
 
 Stress and plastic strain live at the points of the elements: in each they are read by the plane nearest to them, and a
-node takes the mean of its elements. The fields end where nothing may yield, eight contact radii away.
+node takes the mean of its elements. The fields end where nothing may yield, eight or sixteen contact radii away.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from fe_contact.assembly.forms import Array, Basis, Indices
 from fe_contact.fields import Fields, subdivided, written
-from fe_contact.plastic.course import Course
+from fe_contact.plastic.course import Course, within_core
 from fe_contact.plastic.ground import Ground
 from fe_contact.plastic.impact import Runner, pilot, released_power
 from fe_contact.plastic.path import Station, parting
@@ -48,6 +49,10 @@ class PressedAgain:
         """With the settings that the result ended with. Raises NotReached."""
         known, numerics = pilot(scene), Numerics(**result.numerics)
         course = known.course.outgrown(numerics.contact_radius / float(known.march.radius.max()))
+        return within_core(course, partial(cls._of, scene, numerics))
+
+    @classmethod
+    def _of(cls, scene: Scene, numerics: Numerics, course: Course) -> PressedAgain:
         power = released_power(course)
         loading, _, places = Runner(scene, course, silent).pressed(numerics, False)
         before, last = places[-2:]

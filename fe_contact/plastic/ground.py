@@ -32,7 +32,7 @@ from lumped.shapes import Shape
 if TYPE_CHECKING:
     from skfem import MeshTri
 
-CORE = 8.0  # contact radii: up to there the material may yield
+CORE, WIDEST = 8.0, 16.0  # contact radii: up to there the material may yield, at first and at most
 GUARD = 0.8  # of the core: if it yields beyond, the core is too small
 NEAR = 0.5  # of the far radius: where the mesh is cut to see what the far field changes
 AT_EDGE, GROWTH = 4.0, 2.0  # of the mesh: with 1 per unit of length forces differ by less than 2e-4
@@ -40,7 +40,7 @@ AT_EDGE, GROWTH = 4.0, 2.0  # of the mesh: with 1 per unit of length forces diff
 
 @dataclass(frozen=True)
 class Sizes:
-    """Of a mesh: elements along the contact radius, their order, far radius.
+    """Of a mesh: elements along the contact radius, their order, far radius; the radius of its ``core``.
 
     ``rim``: whether all contacts end at one rim; ``cut``: the same mesh without its outer half.
     """
@@ -48,6 +48,7 @@ class Sizes:
     elements: float
     order: int
     far_radius: float
+    core: float = CORE
     rim: bool = False
     cut: bool = False
 
@@ -72,8 +73,8 @@ class Nearer:
 @dataclass(frozen=True, eq=False)
 class Ground:
     """What a rigid ``profile`` is pressed into, on a mesh of some scale; ``unit`` of these scales, m; ``yielding`` in
-    units of E*; ``elements`` (e,) of the ``basis``: those that may yield; ``growing``: how the mesh grows, None under
-    a rim.
+    units of E*; ``elements`` (e,) of the ``basis``: those that may yield, up to the radius ``core``; ``growing``: how
+    the mesh grows, None under a rim.
     """
 
     encounter: Encounter
@@ -84,6 +85,7 @@ class Ground:
     growing: Growing | None
     basis: Basis
     elements: Indices
+    core: float
 
     @property
     def rim(self) -> bool:
@@ -105,7 +107,7 @@ class Ground:
         before = displacement.reshape(-1, 2)
         found = before / growth**2  # as far from a force
         distance = np.hypot(*self.basis.doflocs)
-        within = np.flatnonzero(growth * distance < min(GUARD * CORE, NEAR * float(distance.max())))
+        within = np.flatnonzero(growth * distance < min(GUARD * self.core, NEAR * float(distance.max())))
         found[within] = self.basis.probes(growth * self.basis.doflocs[:, within]) @ before / growth
         return np.asarray(found.ravel())
 
@@ -156,6 +158,7 @@ def ground_of(profile: Shape, unit: float, yielding: Yielding, poisson: float, s
         growing=meshed.growing,
         basis=meshed.basis,
         elements=meshed.elements,
+        core=sizes.core,
     )
 
 
@@ -185,14 +188,14 @@ def _meshed(sizes: Sizes, poisson: float) -> MeshedGround:
     basis = _basis(_mesh(sizes), sizes.order)
     middles = basis.mesh.p[:, basis.mesh.t].mean(axis=1)
     distance = np.hypot(middles[0], middles[1])
-    elements = np.flatnonzero(distance < CORE)
+    elements = np.flatnonzero(distance < sizes.core)
     return MeshedGround(
         core=Bulk.of(basis, False, elements),
         stiffness=system_matrix(basis, poisson),
         fixed=held(basis, along=("axis",), across=()),
         skin=Skin.of(flat(basis), sizes.order, 2 * basis.N),
         growing=None if sizes.rim else Growing.of(basis, elements, sizes.order),
-        outer=distance[elements] > GUARD * CORE,
+        outer=distance[elements] > GUARD * sizes.core,
         basis=basis,
         elements=elements,
     )

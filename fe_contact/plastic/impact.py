@@ -8,6 +8,7 @@ peaks and its second derivative jumps, which no polynomial through both sides wo
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -33,6 +34,7 @@ from fe_contact.plastic.course import (
     finer,
     overlapping,
     settings,
+    within_core,
 )
 from fe_contact.plastic.indent import ROUNDS
 from fe_contact.plastic.path import Station, parting
@@ -268,12 +270,16 @@ def pilot(scene: Scene) -> Pilot:
     energy = 0.5 * scene.reduced_mass * scene.velocity**2
     deepest = _at_most(scene, energy)
     course = Course.of(scene, deepest, deepest).starting_at(PILOT_FIRST * deepest)
+    return within_core(course, partial(_piloted, scene, energy))
+
+
+def _piloted(scene: Scene, energy: float, course: Course) -> Pilot:
     loading = PlasticLoading.of(course, settings(PILOT, course), most=MOST_PILOT, counted=step_done)
-    loading.to(BEYOND * deepest)
+    loading.to(BEYOND * course.deepest)
     power = released_power(course)
     found = Rebound(Answered.of(loading), scene.reduced_mass, energy, power, course.power)
     deepest = found.deepest
-    return Pilot(Course.of(scene, deepest, deepest), found.march(Work()))
+    return Pilot(replace(Course.of(scene, deepest, deepest), core=course.core), found.march(Work()))
 
 
 def _at_most(scene: Scene, energy: float) -> float:
@@ -311,7 +317,10 @@ class Striking:
     def certified(self, numerics: Numerics) -> Budget:
         """The contact and its bars. Raises NotReached."""
         wider = numerics.contact_radius / self.chosen.numerics.contact_radius
-        runner = Runner(self.scene, self.course.outgrown(wider), self.progress)
+        return within_core(self.course.outgrown(wider), partial(self._budget, numerics))
+
+    def _budget(self, numerics: Numerics, course: Course) -> Budget:
+        runner = Runner(self.scene, course, self.progress)
         runs = Varied.of(runner.run, numerics, self.course.coarsest(numerics))
         told, works = Varied(*(run.answered for run in runs)), [run.work for run in runs]
         march = runner.motion(told.mended(_onwards)).march(runs.base.work)

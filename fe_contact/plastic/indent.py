@@ -11,7 +11,17 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.refine import Finer, refine
-from fe_contact.plastic.course import BEYOND, Course, Forces, PlasticLoading, Varied, check_given, finer, settings
+from fe_contact.plastic.course import (
+    BEYOND,
+    Course,
+    Forces,
+    PlasticLoading,
+    Varied,
+    check_given,
+    finer,
+    settings,
+    within_core,
+)
 from fe_contact.progress import Progress
 from fe_contact.settings import Given, Numerics
 from lumped.indentation import Indentation
@@ -79,9 +89,12 @@ class YieldingWay:
 
     def certified(self, numerics: Numerics) -> ForcesFound:
         """Forces and what each setting changes of them. Raises NotReached where nothing settles."""
+        course = self.course.outgrown(numerics.contact_radius)
+        return within_core(course, partial(self._forces, numerics))
+
+    def _forces(self, numerics: Numerics, course: Course) -> ForcesFound:
         depth = np.unique(np.concatenate([np.geomspace(self.asked.min(), self.asked.max(), DENSE), self.asked]))
-        run = partial(self._run, self.course.outgrown(numerics.contact_radius))
-        loadings = Varied.of(run, numerics, self.course.coarsest(numerics))
+        loadings = Varied.of(partial(self._run, course), numerics, self.course.coarsest(numerics))
         told = Varied(*(loading.pressed.logarithm(depth) for loading in loadings))
         return ForcesFound(
             depth=depth,

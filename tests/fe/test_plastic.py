@@ -20,11 +20,11 @@ from fe_contact.assembly.forms import Array
 from fe_contact.errors import BodyTooFine, MemoryTooSmall
 from fe_contact.indentation import indent
 from fe_contact.plastic import ground
-from fe_contact.plastic.course import Course, PlasticLoading, Varied, _depth_of, settings
+from fe_contact.plastic.course import Course, PlasticLoading, Varied, _depth_of, settings, within_core
 from fe_contact.plastic.fields import STRESS, PressedAgain
 from fe_contact.plastic.impact import SPRUNG, Answered, Rebound, Runner, _at_most, _release, pilot, plan
 from fe_contact.plastic.indent import _onwards
-from fe_contact.plastic.path import FIRST_RELEASED, RELEASED, PlasticFlowSlow, Presser, Station
+from fe_contact.plastic.path import FIRST_RELEASED, RELEASED, PlasticFlowSlow, PlasticZoneWide, Presser, Station
 from fe_contact.progress import silent
 from fe_contact.settings import Numerics
 from fe_contact.solids.newton import MOST_ITERATIONS
@@ -422,6 +422,32 @@ def test_a_cone_is_self_similar() -> None:
     found = pressed([1e-6, 4e-6], COARSE, shape="cone", angle=2.0)
     share, bar = found.force / found.depth**2, found.force_error / found.force
     assert abs(share[0] / share[1] - 1.0) < bar.sum() < 0.1
+
+
+@pytest.mark.parametrize("reach", [8.0, 16.0, 32.0])
+def test_a_core_is_as_wide_as_the_flow_needs_and_no_wider_than_is_meshed(reach: float) -> None:
+    tried = []
+
+    def told(course: Course) -> float:
+        tried.append(course.core)
+        if course.core < reach:
+            raise PlasticZoneWide(1e-3, course.core)
+        return course.core
+
+    with pytest.raises(PlasticZoneWide, match="13 contact radii") if reach > ground.WIDEST else nullcontext():
+        assert within_core(COURSE, told) == reach
+    assert tried == [8.0, 16.0][: 1 + (reach > ground.CORE)]
+
+
+@pytest.mark.parametrize(("core", "enough"), [(ground.CORE, False), (ground.WIDEST, True)])
+def test_flow_seven_contact_radii_away_is_within_the_wider_core_alone(core: float, enough: bool) -> None:
+    known = replace(COURSE, core=core).ground(settings(COARSEST, COURSE))
+    middles = known.basis.mesh.p[:, known.basis.mesh.t[:, known.elements]].mean(axis=1)
+    distance = np.hypot(*middles)
+    assert 0.8 * core < distance.max() < core
+    strain, amount = known.rest
+    amount[np.abs(distance - 7.0) < 0.6] = 1e-6
+    assert known.contained((strain, amount)) is enough
 
 
 def test_what_cannot_yield_here_is_refused_by_name() -> None:
