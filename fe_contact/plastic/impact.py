@@ -41,7 +41,7 @@ from fe_contact.plastic.path import Station, parting
 from fe_contact.progress import Progress, silent
 from fe_contact.settings import Given, Numerics, check_kind, tolerance_of
 from fe_contact.steppers.steps import March, Strike, Work
-from lumped.errors import BadInput, Fault
+from lumped.errors import BadInput, Fault, NotReached
 from lumped.progress import step_done
 from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.result import IndentationLeft, LedgerEntry, Result, meets
@@ -58,6 +58,14 @@ PILOT: Given = {"elements_per_contact": 2.0, "steps": 16, "penalty": 4000.0}
 PILOT_FIRST = 0.01  # of its depth, its first step: the work up to there is 1e-4 of the whole
 MOST_PILOT = 1500  # work: its iterations; 150 where a body begins to yield, 520 where it flows from the touch on
 SOFTEST = 0.75  # of the yield strength, on what overlaps: hardly a lower force while a body yields
+
+
+class HeldDown(NotReached):
+    """What springs back does not lift the striker."""
+
+    def __init__(self, depth: float) -> None:
+        reason = f"the weight holds the striker, which went {depth:.3g} m deep"
+        super().__init__(f"{reason}; cure: a higher striker.velocity, or model.gravity = 0")
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,13 +111,17 @@ def _onwards(one: Answered, fine: Answered, coarse: Answered, weight: float) -> 
 
 @dataclass(frozen=True, eq=False)
 class Rebound:
-    """A striker of ``mass``, kg, and ``energy``, J, on a body that answers so; forces ~ (what is left)^``power``."""
+    """A striker of ``mass``, kg, ``energy``, J, and ``weight``, N, on a body that answers so.
+
+    Its force ~ depth^``start`` before the first depth known, and (what is left)^``power`` in the end.
+    """
 
     answered: Answered
     mass: float
     energy: float
     power: float
     start: float
+    weight: float = 0.0
 
     def force(self, depth: Array) -> Array:
         """While it comes in, N; below the first depth known a power of the depth."""
@@ -119,12 +131,12 @@ class Rebound:
         return np.asarray(np.exp(np.interp(inside, np.log(known.depth), known.logarithm) + self.start * before))
 
     def work(self) -> tuple[Array, Array]:
-        """Depths, m, and the work up to them, J."""
+        """Depths, m, and the work up to them, J, less that of the weight."""
         depth = np.concatenate([[0.0], self.answered.depth])
         between = 0.5 * (depth[1:] + depth[:-1])
         thirds = (self.force(depth[:-1]) + 4.0 * self.force(between) + self.force(depth[1:])) * np.diff(depth) / 6.0
         thirds[0] = self.force(depth[1:2])[0] * depth[1] / (self.start + 1.0)
-        return depth, np.concatenate([[0.0], np.cumsum(thirds)])
+        return depth, np.concatenate([[0.0], np.cumsum(thirds)]) - self.weight * depth
 
     @property
     def deepest(self) -> float:
@@ -132,30 +144,32 @@ class Rebound:
         depth, work = self.work()
         if work[-1] <= self.energy:
             return float("inf")
-        after = int(np.searchsorted(work, self.energy))
+        after = int(np.argmax(work > self.energy))
         low, high = float(depth[after - 1]), float(depth[after])
         for _ in range(50):
             middle = 0.5 * (low + high)
             mean = (
                 self.force(np.array([depth[after - 1], 0.5 * (depth[after - 1] + middle), middle])) @ [1, 4, 1]
             ) / 6.0
-            spent = work[after - 1] + mean * (middle - depth[after - 1])
+            spent = work[after - 1] + (mean - self.weight) * (middle - depth[after - 1])
             low, high = (middle, high) if spent < self.energy else (low, middle)
         return high
 
     def march(self, work: Work) -> March:
-        """Rows of the whole contact."""
+        """Rows of the whole contact. Raises HeldDown."""
         deepest, known = self.deepest, self.answered
         share = np.linspace(0.0, 1.0, ROWS + 1)
         coming = deepest * (1.0 - (1.0 - share) ** 2)  # from the greatest depth as the square of the time left
         here = self.force(coming)
-        inward = _fallen(deepest, here[::-1], self.mass)
+        inward = _fallen(deepest, here[::-1] - self.weight, self.mass)
         sprung = known.springs * deepest
         top = float(here[-1])
         going = deepest - sprung * share**2
         left = 1.0 - share**2
         back = top * np.maximum(np.interp(left, SPRUNG, known.roots), 0.0) ** self.power
-        outward = _fallen(sprung, back, self.mass)
+        outward = _fallen(sprung, back - self.weight, self.mass)
+        if not np.all(outward.speed[1:] > 0.0):
+            raise HeldDown(deepest)
         time = np.concatenate([inward.time[-1] - inward.time[::-1], inward.time[-1] + outward.time[1:]])
         speed = np.sqrt(2.0 * self.energy / self.mass)
         velocity = np.concatenate([inward.speed[::-1], -outward.speed[1:]])
@@ -166,21 +180,22 @@ class Rebound:
         return March(
             time=time,
             depth=np.concatenate([coming, going[1:]]),
-            impulse=self.mass * (speed - velocity),
+            impulse=self.mass * (speed - velocity) + self.weight * time,
             first_force=0.0,
             radius_time=time[1:-1],
             radius=radius[1:-1],
             separated=True,
             photograph=tuple,
-            energy=self._account(float(outward.speed[-1])),
+            energy=self._account(deepest - sprung, float(outward.speed[-1])),
             end_spread=0.0,
             work=work,
         )
 
-    def _account(self, speed: float) -> dict[str, float]:
+    def _account(self, left: float, speed: float) -> dict[str, float]:
+        """Of a striker that leaves an indentation ``left`` deep, m, at a ``speed``, m/s."""
         none = dict.fromkeys(("viscous", "radiated", "contact", "numerical"), 0.0)
         own = {name: getattr(self.answered, name) for name in ("stored", "plastic")}
-        return balanced({"in": self.energy, "out": 0.5 * self.mass * speed**2, **own, **none})
+        return balanced({"in": self.energy + self.weight * left, "out": 0.5 * self.mass * speed**2, **own, **none})
 
 
 @dataclass(frozen=True, eq=False)
@@ -277,13 +292,16 @@ def _piloted(scene: Scene, energy: float, course: Course) -> Pilot:
     loading = PlasticLoading.of(course, settings(PILOT, course), most=MOST_PILOT, counted=step_done)
     loading.to(BEYOND * course.deepest)
     power = released_power(course)
-    found = Rebound(Answered.of(loading), scene.reduced_mass, energy, power, course.power)
+    weight = scene.reduced_mass * scene.gravity
+    found = Rebound(Answered.of(loading), scene.reduced_mass, energy, power, course.power, weight)
     deepest = found.deepest
     return Pilot(replace(Course.of(scene, deepest, deepest), core=course.core), found.march(Work()))
 
 
 def _at_most(scene: Scene, energy: float) -> float:
-    """A depth, m, that no impact of this energy, J, goes far beyond: elastic, or little resistance of what overlaps."""
+    """A depth, m, that no impact of this energy, J, goes far beyond: elastic, or little resistance of what overlaps,
+    less its weight.
+    """
     geometry, profile = scene.geometry, scene.profile
     modulus = geometry.shape.modulus(geometry.material).relaxed
     strength = SOFTEST * (geometry.material.yield_strength or np.inf)
@@ -292,7 +310,8 @@ def _at_most(scene: Scene, energy: float) -> float:
     def work(deepest: float) -> float:
         places = deepest * (np.arange(64) + 0.5) / 64
         areas = np.pi * np.array([(profile.fixed_radius or overlapping(profile, float(d))) ** 2 for d in places])
-        return float(np.minimum(modulus * np.asarray(curve.force(places)), strength * areas).mean() * deepest)
+        pressed = np.minimum(modulus * np.asarray(curve.force(places)), strength * areas)
+        return float(pressed.mean() - scene.reduced_mass * scene.gravity) * deepest
 
     while work(depth) < energy:
         depth *= 1.15
@@ -443,7 +462,8 @@ class Runner:
         """The striker's, on what answers so."""
         mass = self.scene.reduced_mass
         energy = 0.5 * mass * self.scene.velocity**2
-        return Rebound(answer, mass, energy, released_power(self.course), self.course.power)
+        weight = mass * self.scene.gravity
+        return Rebound(answer, mass, energy, released_power(self.course), self.course.power, weight)
 
     def variation(self, pair: Contrast[Answered]) -> Variation:
         """Of the striker's motion."""

@@ -157,8 +157,6 @@ def gravity(scene: Scene, model: Model, peak: Peak, mass: float) -> LedgerEntry:
     more = _pressed_on(GRAVITY * mass / peak.force, _exponent(scene, peak)) if peak.force > 0.0 else math.inf
     if model.direction == "down":
         note = "of a mass that meets a power of the depth"
-        if model.plasticity:
-            return LedgerEntry(effect, "neglected", more, f"{note}; no weight with model.plasticity in this version")
         return LedgerEntry(effect, "neglected", more, note, "model.gravity", value=GRAVITY)
     down = f"a drop (--set model.direction=down) leaves out {percent(more)}"
     asked = f"{down}, a horizontal motion (--set model.direction=horizontal) nothing"

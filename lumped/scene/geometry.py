@@ -176,7 +176,6 @@ def plasticity_faults(source: str, model: Model, geometry: Geometry | None, impa
         ),
         (model.inertia, "model.inertia", f"true: no waves {state} in this version; accepted: false"),
         (model.finite, "model.kinematics", f"finite: no large strains {state} in this version; accepted: small"),
-        (model.gravity != 0.0, "model.gravity", f"{model.gravity:g}: no weight {state} in this version; accepted: 0"),
         (impacts > 1, "motion.impacts", f"{impacts}: one impact {state} in this version; accepted: 1"),
         (geometry.striker_material is not None, "striker.material", f"the striker is rigid {state}; leave it out"),
         (geometry.target.name != "half_space", "target.shape", f"{geometry.target.name}: {state} accepted half_space"),

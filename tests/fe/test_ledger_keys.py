@@ -125,7 +125,7 @@ SPLIT: dict[str, object] = {"target.material.hyperelastic": "neo_hooke_split"}
         ("rod-in-ring", STRAINED, BULK, {"target.material.constant": "bulk"}, False),
         ("rod-in-ring", STRAINED | SPLIT, BULK, {"target.material.constant": "bulk"}, True),
         ("polymer-sphere", ELASTIC, WEIGHT, {"model.gravity": 9.81}, True),
-        ("polymer-sphere", ELASTIC | {"model.plasticity": True}, WEIGHT, {"model.gravity": 9.81}, False),
+        ("polymer-sphere", ELASTIC | {"model.plasticity": True}, WEIGHT, {"model.gravity": 9.81}, True),
         ("polymer-sphere", ELASTIC, "plasticity", {"model.plasticity": True}, True),
         ("polymer-sphere", ELASTIC | {"motion.impacts": 2}, "plasticity", {"model.plasticity": True}, False),
     ],

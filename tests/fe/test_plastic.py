@@ -12,6 +12,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 import restitution_laws as published
+from scipy.integrate import solve_ivp
 from scipy.special import beta
 from skfem import MeshTri
 
@@ -22,7 +23,7 @@ from fe_contact.indentation import indent
 from fe_contact.plastic import ground
 from fe_contact.plastic.course import Course, PlasticLoading, Varied, _depth_of, settings, within_core
 from fe_contact.plastic.fields import STRESS, PressedAgain
-from fe_contact.plastic.impact import SPRUNG, Answered, Rebound, Runner, _at_most, _release, pilot, plan
+from fe_contact.plastic.impact import SPRUNG, Answered, HeldDown, Rebound, Runner, _at_most, _release, pilot, plan
 from fe_contact.plastic.indent import _onwards
 from fe_contact.plastic.path import FIRST_RELEASED, RELEASED, PlasticFlowSlow, PlasticZoneWide, Presser, Station
 from fe_contact.progress import silent
@@ -30,9 +31,10 @@ from fe_contact.settings import Numerics
 from fe_contact.solids.newton import MOST_ITERATIONS
 from fe_contact.steppers.steps import Work
 from fe_contact.studies.compare.study import compare
-from lumped import Result, Scene
+from lumped import Result, Scene, simulate
 from lumped.errors import BadInput
 from lumped.indentation import Indentation
+from lumped.laws import ting
 from lumped.materials.plasticity import first_yield
 from lumped.result.model_ledger import FLOW
 from lumped.scene.indenter import Indenter
@@ -96,6 +98,15 @@ def test_before_it_yields_it_is_elastic() -> None:
     assert np.all(found.force_error < 0.02 * hertz)
 
 
+@pytest.mark.tenth
+def test_a_weight_on_what_never_yields_moves_as_by_ting(uncovered: Callable[..., dict[str, float]]) -> None:
+    table = tables(mass=MASS, velocity=0.02)
+    elastic = Scene.from_dict(table | {"model": {"gravity": 2000.0}})
+    strong = replace(elastic.material, yield_strength=1e3 * STRENGTH)
+    scene = replace(elastic, material=strong, model=replace(elastic.model, plasticity=True))
+    assert uncovered(fe_contact.run(scene, numerics=COARSEST), simulate(ting.of(elastic), elastic, 1e-7)) == {}
+
+
 def test_it_yields_first_under_the_axis() -> None:
     """At p0 = 1.60 Y and 0.48 a deep, nu = 0.3: Johnson, Contact Mechanics (1985), 6.2; by a loading still elastic."""
     indenter, _ = SceneReader("scene", tables()).indenter(Indenter)
@@ -152,6 +163,48 @@ def test_a_striker_on_a_spring_that_gives_back_a_share_of_its_depth_moves_as_kno
     speed = velocity - found.impulse[: coming.size] / mass
     assert 0.5 * mass * speed**2 + 0.4 * k * coming**2.5 == pytest.approx(energy, rel=1e-5)
     assert found.radius[: coming.size - 1] ** 2 == pytest.approx(coming[1:], rel=1e-3)
+
+
+def test_a_weight_goes_deeper_and_leaves_slower_or_is_held() -> None:
+    """A spring k d^(3/2) that gives back a third of its depth, integrated beside it.
+
+    A weight set down on k d is pressed with twice its own, which as round a release uses up within 4/5 of its way.
+    """
+    k, mass, velocity, share = 3e9, 0.2, 0.05, 1.0 / 3.0
+    depth = np.geomspace(1e-8, 1e-3, 2000)
+    given = Answered(depth, np.log(k * depth**1.5), np.sqrt(depth), share, SPRUNG, np.sqrt(SPRUNG), 0.0, 0.0)
+    weight = 0.3 * k * (1.25 * mass * velocity**2 / k) ** 0.6
+    found = Rebound(given, mass, 0.5 * mass * velocity**2, 1.5, 1.5, weight).march(Work())
+
+    def fallen(start: list[float], push: Callable[[float], float], end: Callable[[Any, Any], float]) -> Any:
+        end.terminal = True  # type: ignore[attr-defined]  # how scipy is told
+        return solve_ivp(
+            lambda t, y: [y[1], (weight - push(y[0])) / mass],
+            (0.0, 1e-2),
+            start,
+            "DOP853",
+            events=end,
+            rtol=1e-10,
+            atol=1e-16,
+        )
+
+    there = fallen([0.0, velocity], lambda d: k * max(d, 0.0) ** 1.5, lambda t, y: y[1])
+    deepest = float(there.y[0, -1])
+    left = (1.0 - share) * deepest
+    back = fallen(
+        [deepest, 0.0],
+        lambda d: k * deepest**1.5 * (max(d - left, 0.0) / (deepest - left)) ** 1.5,
+        lambda t, y: y[0] - left,
+    )
+    lasts, speed = there.t[-1] + back.t[-1], -float(back.y[1, -1])
+    assert found.depth.max() == pytest.approx(deepest, rel=1e-6)
+    assert found.time[-1] == pytest.approx(lasts, rel=1e-5)
+    assert found.impulse[-1] == pytest.approx(mass * (velocity + speed) + weight * lasts, rel=1e-5)
+    assert found.energy["in"] == pytest.approx(0.5 * mass * velocity**2 + weight * left, rel=1e-6)
+    assert found.energy["out"] == pytest.approx(0.5 * mass * speed**2, rel=1e-4)
+    linear = replace(given, logarithm=np.log(1e6 * depth))
+    with pytest.raises(HeldDown):
+        Rebound(linear, mass, 1e-6, 1.5, 1.0, 100.0).march(Work())
 
 
 def test_no_impact_goes_much_deeper_than_where_its_energy_is_spent_at_the_least_pressure() -> None:
@@ -453,7 +506,6 @@ def test_flow_seven_contact_radii_away_is_within_the_wider_core_alone(core: floa
 def test_what_cannot_yield_here_is_refused_by_name() -> None:
     for change, key in (
         ({"target": {"shape": "layer", "thickness": 1.0, "base": "bonded"}}, "target.shape"),
-        ({"model": {"gravity": 9.81}}, "model.gravity"),
         ({"model": {"kinematics": "finite"}}, "model.kinematics"),
         ({"motion": {"impacts": 2}}, "motion.impacts"),
         ({"striker": ROUNDED}, "striker.shape"),
