@@ -100,7 +100,7 @@ TABLE = (
     Constant(IMPACT, "SETTLED", MEASURED, "of the tolerance: what still swings of a weight at rest"),
     Constant(IMPACT, "LONGEST", MEASURED, "mean steps that a weight which swings may be stepped over"),
     Constant(IMPACT, "AT_REST", MEASURED, "share of the velocity at which a fluid has stopped a striker"),
-    Constant(IMPACT, "REST_ROWS", WORK, "rows of a striker at rest"),
+    Constant(IMPACT, "REST_GROWTH", DERIVED, "between rows at rest six of them tell 1/t to 1e-6"),
     Constant(IMPACT, "STEPS_ALLOWED", WORK, "after which a march gives up"),
     Constant("fe_contact.waves.certify", "ORDER", DERIVED, "contact that begins point by point has order one"),
     Constant("fe_contact.waves.certify", "LEAST_NODES", MEASURED, "along the contact radius; fewer are doubled"),

@@ -181,7 +181,6 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/budget/runs.py", "AnyRuns.curve", "if settings not in"): WORK,
     ("fe_contact/waves/certify.py", "cost_of", ""): WORK,
     ("fe_contact/steppers/scaled_surface.py", "_stresses", "if step.radius > edge -> True"): WORK,
-    ("fe_contact/march/impact.py", "REST_ROWS", ""): WORK,
     ("fe_contact/waves/line.py", "Doubling.finer", ""): WORK,
     ("fe_contact/steppers/struck.py", "SECANTS, PRECISE", "20 ->"): WORK,
     ("fe_contact/contact/problem.py", "ROOM", ""): WORK,

@@ -30,7 +30,8 @@ FAILURES = (ContactLost, ContactNotSettled, MemoryTooSmall)  # of a step that ma
 PREDICTIONS = 2  # of the separation: how far they lie apart tells how well its time can be read
 NOISE = 1e-4  # share of the peak force below which a contact problem may drown in the mesh's error
 AT_REST = 1e-4  # share of the velocity at touch below which a fluid has stopped the striker
-REST_ROWS = 12  # look: times, one of them left out, by which a striker at rest is shown until the end
+# In the root of time, of rows at rest: so near, six of them tell the mean force since touch, as 1/t, to 1e-6.
+REST_GROWTH = 0.03
 FAINT = 1e-3  # share of the peak force below which contact may end
 LONGEST = 2.0  # under gravity, of the mean step: about the largest one within an expected contact
 SETTLED = 0.3  # of the tolerance: share of gravity below which force and velocity swing no more than may be missed
@@ -196,8 +197,9 @@ class _Marcher:
         strike = self.strike
         if state.velocity > resting:
             raise ContactNotSettled(state.time)
-        roots = np.linspace(np.sqrt(state.time), np.sqrt(strike.end_time), REST_ROWS)[1:]
-        return [state._replace(time=float(root) ** 2) for root in roots]
+        rows = math.ceil(0.5 * math.log(strike.end_time / state.time) / math.log1p(REST_GROWTH))
+        times = np.geomspace(state.time, strike.end_time, rows + 1)[1:].tolist()
+        return [state._replace(time=time) for time in times]
 
 
 def _ends(failure: Exception, steps: Sequence[Step]) -> bool:
