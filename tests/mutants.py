@@ -135,6 +135,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/waves/plan.py", "LOOSER", ""): BEGINS,
     ("fe_contact/relaxing_impact.py", "plan", ""): BEGINS,
     ("fe_contact/relaxing_impact.py", "ELEMENTS", ""): BEGINS,
+    ("fe_contact/indentation.py", "SCOUTING, SCOUTING_ORDER", "2 -> 3"): BEGINS,
     ("fe_contact/budget/certify.py", "certify", "4 -> "): BEGINS,
     # a guess that Newton's method, a secant or a check of every step corrects
     ("fe_contact/contact/problem.py", "_answered", "springs * lifted ->"): GUESS,
@@ -188,6 +189,12 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/steppers/struck.py", "FixedContact._by_secants", "solves +"): WORK,
     ("fe_contact/steppers/struck.py", "FixedContact._at_once", "1 ->"): WORK,
     ("fe_contact/contact/enforcement/augmented.py", "SLOW, STIFFER, STIFFEST", ""): WORK,
+    (
+        "fe_contact/contact/enforcement/augmented.py",
+        "SETTLED",
+        "1e-08 -> 1e-09",
+    ): "updates more of the same answer, to 2e-8 of its largest pressure",
+    ("fe_contact/waves/targets/rod.py", "MOST_MESHED", "100000 -> 200000"): WORK,
     ("fe_contact/bodies/pressing.py", "ScaledStill.press", "attempt * solves"): WORK,
     ("fe_contact/reference.py", "_too_dear", "longer * wider"): WORK,
     ("fe_contact/reference.py", "_too_dear", "3 ->"): WORK,
@@ -293,6 +300,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/waves/targets/rod.py", "ROUNDING", "1e-09 -> 1e-08"): "below what any result is asked for",
     ("lumped/laws/_hereditary.py", "Course._rested", "1e-12 ->"): "an end time but for rounding",
     ("lumped/laws/correspondence.py", "ROUGH, FINE", ""): BEGINS,
+    ("lumped/laws/correspondence.py", "MEMBER", "0.005 -> 0.05"): WORK,
     ("lumped/solvers/radau.py", "STAGES", ""): WORK,
     ("lumped/solvers/point/track.py", "NEWTONS", "8 -> 9"): WORK,
     ("lumped/solvers/point/bodies.py", "Dent.resistance", "1.0 ->"): "what is below zero, by which alone it is told",

@@ -689,6 +689,32 @@ def test_st_venants_material_bears_waves_along_the_stress_down_to_a_stretch(stre
     assert elliptic(tangent) == (3.0 * stretch**2 > 1.0)
 
 
+@pytest.mark.parametrize(("onwards", "borne"), [(0.62, True), (0.55, False), (-0.1, True)])
+def test_a_body_bears_waves_where_it_is_and_where_it_goes_on_to_unless_it_cannot_be_there(
+    onwards: float, borne: bool
+) -> None:
+    """St. Venant's, one point by its stretch 1 - depth, at depth 0.1 of itself; turned inside out it has no energy."""
+    response = Hyperelastic(energy_of("st_venant_kirchhoff"), 1.0, 0.0)
+
+    def answered(displacement: Array, law: Hyperelastic, state: State) -> Any:
+        gradient = np.array([0.0, 0.0, 0.0, displacement[0], 0.0])[:, None]
+        answer = law.respond(gradient, state)
+        return SimpleNamespace(answer=answer, energy=float(answer.energy[0]))
+
+    body = SimpleNamespace(core=SimpleNamespace(answered=answered), response=response)
+
+    def equilibrium(depth: float) -> Equilibrium:
+        encounter, displacement = SimpleNamespace(body=body), np.array([-depth])
+        loaded = answered(displacement, response, ())
+        balance: Any = SimpleNamespace(
+            encounter=encounter, displacement=displacement, depth=depth, state=(), loaded=loaded
+        )
+        return Equilibrium(balance, np.array([-1.0]), 1)
+
+    assert equilibrium(0.1).elliptic(1.0 - onwards) == borne
+    assert not equilibrium(0.45).elliptic(0.1), "here it does not"
+
+
 def test_waves_are_borne_where_the_acoustic_tensor_of_every_direction_is_definite() -> None:
     """Q_ik = C_ijkl N_j N_l of random tangents, a quarter of a degree apart; near to none it is left open."""
     rng, angle = np.random.default_rng(5), np.linspace(0.0, np.pi, 720, endpoint=False)

@@ -359,6 +359,49 @@ def test_a_striker_that_leaves_within_a_step_is_slowed_by_half_of_the_force_that
     assert (there.force, there.impulse) == (0.0, 5.0)
 
 
+@dataclass(frozen=True, eq=False)
+class Trending(OnSpring):
+    """Its contact ends as the trend says: after ``left``, s."""
+
+    left: float = 0.0
+
+    def _time_left(self, instants: list[Instant]) -> float | None:
+        return self.left
+
+
+@pytest.mark.parametrize("gravity", [0.0, 3.0])
+def test_a_contact_ends_as_a_force_that_falls_by_the_power_of_its_curve_moves_the_striker(
+    gravity: float, settings_of: Callable[..., Numerics]
+) -> None:
+    """F (1 - t/left)^(3/2) integrated twice by hand, in units of length and force of their own."""
+    unit, scale, mass, left = 0.02, 3.0, 0.4, 0.05
+    strike = Strike(lambda r: r**2, mass, 0.7, gravity, Relaxation(1.0), 10.0)
+    spring = on_spring(strike, settings_of(strike, steps=60), unit, scale)
+    found: Any = SimpleNamespace(balance=SimpleNamespace(displacement=np.zeros(1), touch=SimpleNamespace(energy=0.0)))
+    last = replace(spring._touch(), time=0.3, depth=1.5, velocity=-30.0, impulse=0.16, force=0.2, found=found)
+    march = Trending(**vars(spring), left=left)._record([spring._touch(), last], separated=True)
+    given, speed, force = scale * 0.16, -30.0 * unit, scale * 0.2
+    assert march.time == pytest.approx([0.0, 0.3, 0.35])
+    assert march.impulse == pytest.approx([0.0, given, given + force * left / 2.5])
+    end = 1.5 * unit + speed * left + 0.5 * gravity * left**2 - force / mass * left**2 / 3.5
+    assert march.depth == pytest.approx([0.0, 1.5 * unit, end], rel=1e-12)
+    out = 0.5 * mass * (speed + gravity * left - force / mass * left / 2.5) ** 2
+    assert march.energy["out"] == pytest.approx(out, rel=1e-12)
+
+
+def test_an_end_is_told_from_the_fourth_step_on_while_the_striker_leaves(
+    settings_of: Callable[..., Numerics],
+) -> None:
+    """By the power 3/2 of the time that is left; the fewest steps that a user may choose leave few to tell it."""
+    strike = Strike(lambda r: r**2, 0.4, 0.7, 0.0, Relaxation(1.0), 10.0)
+    spring = on_spring(strike, settings_of(strike, steps=8), 0.02, 3.0)
+    touch, times = spring._touch(), (0.0, 0.03, 0.05, 0.06, 0.065)
+    falling = [replace(touch, time=time, velocity=-1.0, force=(0.08 - time) ** 1.5) for time in times]
+    assert spring._time_left(falling) == pytest.approx(0.015, rel=1e-9)
+    assert spring._time_left(falling[:4]) is None
+    assert spring._time_left([*falling[:4], replace(falling[4], velocity=0.1)]) is None
+
+
 REFUSED = {
     "target.material.law": {"target.material": {"law": "kelvin_voigt", "E": 1e6, "eta": 1e3, "nu": 0.4}},
     "target.material.constant": {"target.material.constant": "bulk", "target.material.hyperelastic": "yeoh"},
