@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.optimize import minimize_scalar
 from skfem import MeshTri
 
 from fe_contact import large_strains, run
@@ -208,6 +209,36 @@ def test_a_block_pressed_by_little_is_a_spring(sides: str) -> None:
         indenter = Indenter(block, Material(Relaxation(1.0), nu, hyperelastic="neo_hooke"), Plane())
         change = press_block(indenter, block, depth).force / (4.0 * depth / 0.5) - 1.0
         assert abs(2.0 * change[0] - change[1]) < 1e-6
+
+
+@pytest.mark.parametrize("sides", ["free", "confined"])
+@pytest.mark.parametrize("name", ["neo_hooke", "yeoh"])
+def test_a_block_pressed_deep_presses_by_the_slope_of_its_least_energy(name: str, sides: str) -> None:
+    """By scipy, over the stretch across where sides are free: to 40 % of its thickness."""
+    block, material = Prism(4.0, 0.5, sides), Material(Relaxation(3.0), 0.3, hyperelastic=name)
+    shear, depth, small = 3.0 / 2.6, np.array([0.01, 0.1, 0.2]), 1e-5
+    lame = 2.0 * shear * 0.3 / 0.4
+
+    def energy(along: float, across: float) -> float:
+        gradient = np.array([across - 1.0, 0.0, 0.0, along - 1.0, across - 1.0])[:, None]
+        return float(strained(energy_of(name), gradient, shear, lame).energy[0])
+
+    def least(along: float) -> tuple[float, float]:
+        """And where."""
+        if sides == "confined":
+            return energy(along, 1.0), 1.0
+        found = minimize_scalar(
+            lambda across: energy(along, across), bounds=(0.9, 1.5), method="bounded", options={"xatol": 1e-9}
+        )
+        return float(found.fun), float(found.x)
+
+    found = press_block(Indenter(block, material, Plane()), block, depth)
+    modulus = 3.0 if sides == "free" else lame + 2.0 * shear
+    for deep, force, radius in zip(depth, found.force, found.contact_radius, strict=True):
+        along = 1.0 - deep / 0.5
+        slope = (least(along + small)[0] - least(along - small)[0]) / (2.0 * small)
+        assert force * modulus == pytest.approx(-4.0 * slope, rel=1e-6)
+        assert radius == pytest.approx(math.sqrt(4.0 / math.pi) * least(along)[1], rel=1e-6)
 
 
 def test_the_force_is_the_slope_of_the_energy() -> None:

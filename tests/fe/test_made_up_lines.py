@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,10 +19,16 @@ from fe_contact.waves.line_reading import (
     FORCE,
     RINGING,
     TIME,
+    VELOCITY,
+    Ending,
     RodReading,
     _bar_ended,
     _cleaned,
+    _contact,
     _rod_ended,
+    _undented,
+    stopped,
+    with_fronts,
 )
 from fe_contact.waves.targets._block import plan
 from lumped import Scene
@@ -248,3 +256,87 @@ def test_a_rod_that_has_left_is_told_where_and_as_fast_as_it_was_when_it_left(gr
     np.testing.assert_array_equal(found[:, :-1], rows[:, :3])
     assert found[:, -1] == pytest.approx([end, 0.7, -1.5, 0.0, 0.0])
     np.testing.assert_array_equal(rows[TIME], time)
+
+
+@pytest.mark.parametrize("spoiled", [0, 2])
+def test_forces_before_and_behind_a_front_are_read_off_the_steps_beside_it(spoiled: int) -> None:
+    """Parabolas from front to front, the second of which would come to pull: nothing does. Behind a front in its own
+    step the march has the mean, and in those that are spoiled anything.
+    """
+    time, fronts = np.arange(30.0), np.array([0, 10, 20])
+    pieces = [lambda t: 9.0 - 0.3 * t + 0.01 * t**2, lambda t: 6.0 - 0.05 * (t - 9.0) ** 2, lambda t: 2.0 + 0.1 * t]
+    force = np.concatenate([piece(time[10 * k : 10 * k + 10]) for k, piece in enumerate(pieces)])
+    for front in fronts:
+        force[front : front + spoiled + 1] = 99.0
+    force[-1] = 0.0
+    rows = np.array([time, 2.0 * time, -time, force, 3.0 * time])
+    found = with_fronts(rows, fronts, spoiled)
+    times, forces = list[float](), list[float]()
+    for k, piece in enumerate(pieces):
+        inside = [10.0 * k, *np.arange(10.0 * k + spoiled + 1.0, 10.0 * k + 10.0)] + [10.0 * k + 10.0] * (k < 2)
+        times += inside
+        forces += [max(float(piece(at)), 0.0) for at in inside]
+    forces[-1] = 0.0
+    assert found[TIME].tolist() == times
+    assert found[FORCE] == pytest.approx(np.array(forces), abs=1e-9)
+    assert found[DEPTH] == pytest.approx(2.0 * found[TIME])
+    assert min(forces[:-1]) == 0.0
+
+
+@pytest.mark.parametrize(("end", "kept"), [(3.4, 4), (3.0, 3), (7.0, 6)])
+def test_rows_are_told_up_to_an_end_within_the_last_step_or_as_far_as_the_march_went(end: float, kept: int) -> None:
+    time = np.arange(6.0)
+    rows = np.array([time, time**2, -time, 5.0 * time, 3.0 * time])
+    found = stopped(rows, end)
+    np.testing.assert_array_equal(found[:, :kept], rows[:, :kept])
+    assert found.shape[1] == kept + (end < 5.0)
+    if end < 5.0:
+        line = np.interp(end, time, time**2)
+        assert found[:, -1] == pytest.approx([end, line, -end, 5.0 * end, 3.0 * end])
+
+
+@pytest.mark.parametrize(("gone", "read"), [(0.3, 0.3), (0.95, 0.95), (1.7, 1.0), (-0.2, 1.0)])
+def test_a_dent_comes_to_nothing_where_its_parabola_does_within_a_step_of_what_still_presses(
+    gone: float, read: float
+) -> None:
+    """In steps of any length, from the last row that is pressed, the one before the last; else a step after it."""
+    time = 0.2 * np.arange(7.0)
+    dent = 1e-3 * (time - time[-2] - 0.2 * gone) * (time - 3.0)
+    assert _undented(np.array([*np.zeros((1, 7)) + time, *np.zeros((3, 7)), dent])) == pytest.approx(
+        time[-2] + 0.2 * read, rel=1e-9
+    )
+
+
+@pytest.mark.parametrize("gravity", [0.0, 0.4])
+def test_a_contact_is_told_by_its_own_rows_and_by_the_impulse_of_its_own_force(gravity: float) -> None:
+    """An even force over three units of time, between two that are none of its own; by hand."""
+    start, end, came, force = 2.0, 5.0, 1.5, 2.0
+    time = np.linspace(0.0, 7.0, 71)
+    own = (time >= start) & (time <= end)
+    rows = np.array([time, 0.3 - 0.1 * (time - 3.0) ** 2, np.full(71, came), 2.5 * force * ~own + force * own, time])
+    impulses = 7.0 + force * np.clip(time - start, 0.0, end - start)
+    found = _contact(rows, time, impulses, (start, end), MASS, gravity)
+    left = came + gravity * 3.0 - force * 3.0 / MASS
+    assert found == {
+        "start": start,
+        "duration": 3.0,
+        "velocity": pytest.approx(came),
+        "restitution": pytest.approx(-left / came, rel=1e-9),
+        "peak_force": force,
+        "peak_time": start,
+        "peak_depth": pytest.approx(0.3),
+    }
+    rows[VELOCITY] = 2.0 * time
+    assert _contact(rows, time, impulses, (start, end), MASS, gravity)["velocity"] == pytest.approx(2.0 * start)
+
+
+@pytest.mark.parametrize("impacts", [1, 2])
+def test_contacts_are_over_when_the_last_of_them_is_open_for_longer_than_a_pause(impacts: int) -> None:
+    """One that opens for less is the same contact: of 1 pressed to 3, 4 to 6, and from 9 on to 10, in pauses of 1.5."""
+    pressed = [1, 2, 3, 4, 5, 6, 9, 10]
+    ending = Ending(impacts, pause=1.5)
+    told = list[int]()
+    for time in range(14):
+        sample: Any = SimpleNamespace(time=float(time) + 0.3 * (time in (4, 5)), force=float(time in pressed))
+        told += [time] * ending(sample)
+    assert told == ([8] if impacts == 1 else [12, 13])
