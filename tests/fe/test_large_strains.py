@@ -39,6 +39,7 @@ from fe_contact.solids.newton import (
 from fe_contact.solids.pressing import Reached, Solid, _core, _together, advanced, press
 from fe_contact.solids.rolled import Rolled
 from lumped import BadInput, Scene, laws
+from lumped.errors import NotReached
 from lumped.indentation import Indentation
 from lumped.materials import Material, Relaxation
 from lumped.materials.energies.base import ENERGIES, energy_of, strained
@@ -239,6 +240,18 @@ def test_a_block_pressed_deep_presses_by_the_slope_of_its_least_energy(name: str
         slope = (least(along + small)[0] - least(along - small)[0]) / (2.0 * small)
         assert force * modulus == pytest.approx(-4.0 * slope, rel=1e-6)
         assert radius == pytest.approx(math.sqrt(4.0 / math.pi) * least(along)[1], rel=1e-6)
+
+
+def test_a_block_that_softens_is_pressed_to_where_its_waves_end_and_the_least_depth_beyond_is_told() -> None:
+    """St Venant and Kirchhoff's, confined, nu = 0: down to a stretch of 1/sqrt(3); just before, it shears away."""
+    block, material = Prism(1.0, 2.0, "confined"), Material(Relaxation(1.0), 0.0, hyperelastic="st_venant_kirchhoff")
+    indenter, last = Indenter(block, material, Plane()), 2.0 * (1.0 - 1.0 / np.sqrt(3.0))
+    stretch = 1.0 - 0.94 * last / 2.0
+    found = press_block(indenter, block, np.array([0.94 * last]))
+    assert found.force == pytest.approx([0.5 * (stretch - stretch**3)], rel=1e-9)
+    with pytest.raises(BeyondRange) as ended:
+        press_block(indenter, block, np.array([1.2, 0.5, 1.01, 1.1]) * last)
+    assert ended.value.depth == pytest.approx(1.01 * last)
 
 
 def test_the_force_is_the_slope_of_the_energy() -> None:
@@ -853,6 +866,22 @@ def test_depths_are_pressed_finer_until_the_impact_meets_its_tolerance(
     monkeypatch.setattr(large_strains, "depth_reached", lambda scene: 0.4 * scene.profile.tip_radius)
     assert run(scene, tolerance=1e-2).converged == converged
     assert len(asked) == (2 if lessened else 1)
+
+
+def test_a_striker_that_goes_deeper_than_every_curve_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    """And what it takes to go less deep."""
+    scene, deepest = Scene.load("polymer-sphere-finite"), list[float]()
+
+    def curve(scene: Scene, deep: float, given: Given, progress: object) -> Any:
+        deepest.append(deep)
+        beyond: Any = SimpleNamespace(quantities={"peak_depth": Quantity(1.01 * deep, 0.0, "m")})
+        return SimpleNamespace(impact=lambda scene, tolerance: beyond)
+
+    monkeypatch.setattr(large_strains, "_known", curve)
+    monkeypatch.setattr(large_strains, "depth_reached", lambda scene: 1e-4)
+    with pytest.raises(NotReached, match=r"deeper than .* m; cure: a lower striker\.velocity or \.mass"):
+        run(scene, tolerance=1e-2)
+    assert np.all(np.diff(deepest) > 0.0)
 
 
 def press_once(scene: Scene, depth: float) -> float:

@@ -12,6 +12,7 @@ import pytest
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.variation import SAFETY
+from fe_contact.dynamics.march import Motion, Sample
 from fe_contact.waves.line import AWAY, UNSHOWN, Line, Run, _ended_later
 from fe_contact.waves.line_reading import (
     CLEAR,
@@ -27,6 +28,7 @@ from fe_contact.waves.line_reading import (
     _contact,
     _rod_ended,
     _undented,
+    read_rod,
     stopped,
     with_fronts,
 )
@@ -340,3 +342,38 @@ def test_contacts_are_over_when_the_last_of_them_is_open_for_longer_than_a_pause
         sample: Any = SimpleNamespace(time=float(time) + 0.3 * (time in (4, 5)), force=float(time in pressed))
         told += [time] * ending(sample)
     assert told == ([8] if impacts == 1 else [12, 13])
+
+
+@pytest.mark.parametrize("shape", ["punch", "sphere"])
+@pytest.mark.parametrize("separated", [True, False])
+@pytest.mark.parametrize("gravity", [0.0, 50.0])
+def test_an_impact_on_a_rod_is_read_off_its_steps_as_an_even_force_moves_a_mass(
+    gravity: float, separated: bool, shape: str
+) -> None:
+    """By hand: it presses for six steps and a half, and no front comes back meanwhile; it ends in the seventh, or
+    in the sixth where the scene does.
+    """
+    step, last = 1e-4, 7.0 if separated else 5.4
+    changes = {"striker.shape": shape, "model.gravity": gravity, "motion.end_time": last * step}
+    scene = Scene.load("rod", {**changes, "model.profile": "parabola"})
+    mass, time, end = scene.reduced_mass, step * np.arange(np.ceil(last) + 1.0), 6.5 * step
+    force = 1.7 * mass * scene.velocity / end
+    for_so_long = np.minimum(time, end)
+    velocity = scene.velocity + gravity * time - force / mass * for_so_long
+    depth = (scene.velocity + 0.5 * gravity * time) * time - force / mass * for_so_long * (time - 0.5 * for_so_long)
+    none: Any = None
+    samples = tuple(
+        Sample(at, force * (at < end), 0.0, np.array([1e-3 * (end - at) / step]), np.zeros(1), np.array([end - at]),
+               np.array([deep]), np.array([speed]), none, 1)
+        for at, deep, speed in zip(time, depth, velocity, strict=True)
+    )  # fmt: skip
+    found = read_rod(Motion(samples, none, 1), scene, 40, separated)
+    until = end if separated else last * step
+    left = scene.velocity + gravity * until - force / mass * until
+    values = dict(found.quantities)
+    assert values["impulse"] == pytest.approx(force * until, rel=1e-9)
+    assert values["peak_force"] == pytest.approx(force)
+    assert values["duration"] == (pytest.approx(end) if separated else None)
+    assert values["restitution"] == (pytest.approx(-left / scene.velocity) if separated else None)
+    assert values["peak_depth"] == pytest.approx(0.5 * scene.velocity**2 / (force / mass - gravity), rel=1e-3)
+    assert found.force_at(np.array([2.5 * step])) == pytest.approx(force)

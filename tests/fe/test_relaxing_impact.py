@@ -109,6 +109,16 @@ def test_a_volume_that_stands_apart_does_not_relax(name: str) -> None:
     assert abs(lasting.stress[3]) < 0.5 * abs(law.sudden.respond(stretch, ()).stress[3])
 
 
+@pytest.mark.parametrize("name", [name for name in ENERGIES.names if energy_of(name).splits])
+def test_a_sudden_strain_is_answered_by_shape_and_volume_as_by_both_in_one(name: str) -> None:
+    """Nothing has relaxed yet: of stress, energy and tangent, and of what bends that and how it drifts."""
+    law, fading = FadingLaw(Hyperelastic(energy_of(name), 1.0, 2.0), NETWORK, True), Fading.over(NETWORK, 1e-9)
+    gradient = np.random.default_rng(4).uniform(-0.2, 0.2, (5, 6))
+    apart, whole = law.over(fading).respond(gradient, fading.at_rest(4, 6)), law.sudden.respond(gradient, ())
+    for part in ("stress", "energy", "tangent", "pulls", "drifts"):
+        assert getattr(apart, part) == pytest.approx(getattr(whole, part), rel=1e-7, abs=1e-7), part
+
+
 @pytest.mark.parametrize("lame", [0.5, 2.0, 40.0])
 def test_where_all_relaxes_alike_what_lasts_is_a_share_of_all_and_what_fades_has_the_ratio_of_the_body(
     lame: float,
