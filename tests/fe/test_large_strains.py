@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.optimize import minimize_scalar
+from scipy.optimize import brentq, minimize_scalar
 from skfem import MeshTri
 
 from fe_contact import large_strains, run
@@ -20,8 +20,9 @@ from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import basis_on
 from fe_contact.indentation import expected, indent, settings
 from fe_contact.indentation import press as press_any
+from fe_contact.progress import silent
 from fe_contact.settings import Given
-from fe_contact.solids import pressing
+from fe_contact.solids import newton, pressing
 from fe_contact.solids.base import PointAnswer, State, elliptic
 from fe_contact.solids.block import press as press_block
 from fe_contact.solids.bulk import Bulk, Pattern
@@ -43,7 +44,7 @@ from lumped.errors import NotReached
 from lumped.indentation import Indentation
 from lumped.materials import Material, Relaxation
 from lumped.materials.energies.base import ENERGIES, energy_of, strained
-from lumped.result.result import Quantity
+from lumped.result.result import Quantity, largest_bar
 from lumped.scene.indenter import Indenter
 from lumped.scene.tables import LawChoice, Model
 from lumped.shapes import Sphere
@@ -672,6 +673,22 @@ def test_a_body_whose_energy_has_no_descent_is_lost_once_it_is_taken_as_at_rest(
     assert asked == [(False, False, 0), (False, False, 3), (True, True, 3)]
 
 
+@pytest.mark.parametrize("hasty", [True, False])
+def test_who_is_in_haste_gives_up_where_no_whole_steps_lead_to_an_equilibrium(
+    hasty: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Half the way is the better one then; else it is looked for by what lessens the energy, from where it began."""
+    start, at_last = np.array([0.3]), object()
+    encounter: Any = SimpleNamespace(at=lambda place, *given: SimpleNamespace(displacement=place, energy=1.0))
+    monkeypatch.setattr(newton, "_hastened", lambda *given: None)
+    monkeypatch.setattr(newton, "_descending", lambda here, *given: at_last if here.displacement is start else None)
+    if hasty:
+        with pytest.raises(EquilibriumLost, match="whole steps"):
+            balanced(encounter, start, 0.1, 500.0, hasty=True)
+        return
+    assert balanced(encounter, start, 0.1, 500.0) is at_last
+
+
 def descended(energy: Callable[[float], float], slope: float, way: float = 0.3) -> float:
     """Where the line search leaves a body of one displacement, from 0.7 on, of the ``way`` that Newton's step goes."""
     free: Any = SimpleNamespace(body=SimpleNamespace(free=np.array([1])))
@@ -816,6 +833,32 @@ def test_an_elastic_impact_gives_back_all_of_it() -> None:
     assert abs(pressed - peak) < 2.0 * (quantities["peak_force"].error or 0.0)
 
 
+@pytest.mark.parametrize("gravity", [0.0, 0.01])
+def test_the_deepest_depth_is_where_a_body_has_taken_up_what_the_striker_brings(
+    gravity: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of an energy c d^2.5, in units of its own: its power leads there at once, or nearly where gravity adds to it."""
+    scene = Scene.load("polymer-sphere-finite", {"model.gravity": gravity, "model.direction": "down"})
+    unit, lead, tried = 0.01, 0.7, list[float]()
+    stiffness = scene.contact_modulus.relaxed * scene.geometry.shape.total * unit**3 / lead
+    c = 0.4 * 0.5 * scene.mass * scene.velocity**2 / (stiffness * 1e-3**2.5)
+
+    def advanced(before: object, depth: float, stiffness: float) -> Any:
+        tried.append(depth)
+        inner = depth / unit
+        return SimpleNamespace(
+            balance=SimpleNamespace(depth=inner, force=2.5 * c * unit**2.5 * inner**1.5, energy=c * depth**2.5)
+        )
+
+    solid = SimpleNamespace(unit=unit, lead=lead, dimension=2, advanced=advanced)
+    monkeypatch.setattr(large_strains.Solid, "of", lambda *given: solid)
+    exact = brentq(
+        lambda d: stiffness * c * d**2.5 - scene.mass * (0.5 * scene.velocity**2 + gravity * d), 1e-4, 1.0, xtol=1e-12
+    )
+    assert large_strains.depth_reached(scene) == pytest.approx(exact, rel=1e-3)
+    assert len(tried) <= (6 if gravity else 2)
+
+
 @pytest.mark.parametrize("error", [4e-3, -4e-3])
 @pytest.mark.parametrize("tilted", [False, True])
 def test_a_curve_that_errs_by_its_bars_leaves_the_impact_within_its_own(
@@ -858,6 +901,8 @@ def test_depths_are_pressed_finer_until_the_impact_meets_its_tolerance(
     def indented(indenter: Indenter, depths: tuple[float, ...], given: Given, progress: object) -> Indentation:
         asked.append(float(given["tolerance"]))
         depth = np.array(depths)
+        assert np.all(np.diff(depth) > 0.0), "each of them tells something"
+        assert depth[-1] == pytest.approx(1.02 * 0.4 * scene.profile.tip_radius), "a little deeper than it goes"
         force, radius = k * depth**1.5, np.sqrt(depth * scene.profile.tip_radius)
         bar = np.full(len(depths), asked[-1] if lessened else 1.1e-2)
         return Indentation(indenter, "fe", k, 1e-2, depth, force, radius, bar * force, {"mesh": bar})
@@ -866,6 +911,27 @@ def test_depths_are_pressed_finer_until_the_impact_meets_its_tolerance(
     monkeypatch.setattr(large_strains, "depth_reached", lambda scene: 0.4 * scene.profile.tip_radius)
     assert run(scene, tolerance=1e-2).converged == converged
     assert len(asked) == (2 if lessened else 1)
+
+
+def test_an_impact_on_a_known_curve_is_followed_to_a_hundredth_of_the_tolerance(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of k d^1.5 (1 + d/D), which stiffens, by energy and momentum."""
+    scene, stiff = Scene.load("polymer-sphere-finite"), 2e-3
+    k, energy = 4.0 / 3.0 * scene.contact_modulus.relaxed, 0.5 * scene.mass * scene.velocity**2
+
+    def indented(indenter: Indenter, depths: tuple[float, ...], given: Given, progress: object) -> Indentation:
+        depth = np.array(depths)
+        force = k * depth**1.5 * (1.0 + depth / stiff)
+        return Indentation(indenter, "fe", k, 1e-2, depth, force, np.sqrt(depth), np.zeros_like(depth))
+
+    monkeypatch.setattr(large_strains, "indent", indented)
+    deep = brentq(lambda d: k * d**2.5 * (0.4 + d / (3.5 * stiff)) - energy, 1e-6, 1.0, xtol=1e-15)
+    found = large_strains._known(scene, 1.02 * deep, {}, silent).impact(scene, 1e-6)
+    assert largest_bar(found.quantities) <= 1e-8
+    force, impulse = k * deep**1.5 * (1.0 + deep / stiff), 2.0 * scene.mass * scene.velocity
+    for name, value in (("peak_depth", deep), ("peak_force", force), ("impulse", impulse)):
+        assert found.quantities[name].value == pytest.approx(value, rel=1e-6), name
 
 
 def test_a_striker_that_goes_deeper_than_every_curve_is_named(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -28,6 +28,7 @@ from fe_contact.waves.line_reading import (
     _contact,
     _rod_ended,
     _undented,
+    read_bar,
     read_rod,
     stopped,
     with_fronts,
@@ -297,13 +298,15 @@ def test_rows_are_told_up_to_an_end_within_the_last_step_or_as_far_as_the_march_
         assert found[:, -1] == pytest.approx([end, line, -end, 5.0 * end, 3.0 * end])
 
 
-@pytest.mark.parametrize(("gone", "read"), [(0.3, 0.3), (0.95, 0.95), (1.7, 1.0), (-0.2, 1.0)])
-def test_a_dent_comes_to_nothing_where_its_parabola_does_within_a_step_of_what_still_presses(
-    gone: float, read: float
+@pytest.mark.parametrize(
+    ("gone", "again", "read"), [(0.3, 9.0, 0.3), (0.95, 9.0, 0.95), (0.3, 0.8, 0.3), (1.7, 9.0, 1.0), (-0.2, 9.0, 1.0)]
+)
+def test_a_dent_comes_to_nothing_where_its_parabola_first_does_within_a_step_of_what_still_presses(
+    gone: float, again: float, read: float
 ) -> None:
     """In steps of any length, from the last row that is pressed, the one before the last; else a step after it."""
     time = 0.2 * np.arange(7.0)
-    dent = 1e-3 * (time - time[-2] - 0.2 * gone) * (time - 3.0)
+    dent = 1e-3 * (time - time[-2] - 0.2 * gone) * (time - time[-2] - 0.2 * again)
     assert _undented(np.array([*np.zeros((1, 7)) + time, *np.zeros((3, 7)), dent])) == pytest.approx(
         time[-2] + 0.2 * read, rel=1e-9
     )
@@ -342,6 +345,34 @@ def test_contacts_are_over_when_the_last_of_them_is_open_for_longer_than_a_pause
         sample: Any = SimpleNamespace(time=float(time) + 0.3 * (time in (4, 5)), force=float(time in pressed))
         told += [time] * ending(sample)
     assert told == ([8] if impacts == 1 else [12, 13])
+
+
+def test_a_bar_that_touches_twice_is_told_by_both_contacts_without_their_ringing() -> None:
+    """Even forces but for the steps at their ends; between them it flies, as gravity has it."""
+    time, spans, gravity = np.arange(103.0), [(1.0, 40.0), (61.0, 100.0)], 0.1
+    pressed = np.any([(time >= start) & (time <= end) for start, end in spans], axis=0)
+    near = np.min([np.minimum(np.abs(time - start), np.abs(time - end)) for start, end in spans], axis=0) < RINGING
+    force = pressed * (1.0 + 0.3 * near * (time % 2.0))
+    passed = sum(np.clip(time - start, 0.0, end - start) for start, end in spans)
+    velocity, none = SPEED + gravity * time - passed / 10.0, None
+    samples = tuple(
+        Sample(at, push, given, np.array([0.0 if push else -1.0]), np.ones(1), np.array([1e-9 if push else -1.0]),
+               np.array([0.1 * at]), np.array([speed]), none, 1)
+        for at, push, given, speed in zip(time, force, np.diff(passed, prepend=0.0), velocity, strict=True)
+    )  # fmt: skip
+    scene: Any = SimpleNamespace(motion=SimpleNamespace(impacts=2), gravity=gravity, end_time=200.0)
+    found, contacts = read_bar(Motion(samples, none, 1), 10.0, scene, 5.0, None)
+    assert found.separated
+    assert found.rows[FORCE].max() == pytest.approx(1.0)
+    assert found.quantities["impulse"] == pytest.approx(78.0)
+    for one, (start, end) in zip(contacts, spans, strict=True):
+        came = np.interp(start, time, velocity)
+        left = came + 39.0 * gravity - 3.9
+        told = {"start": start, "duration": 39.0, "velocity": came, "restitution": -left / came, "peak_force": 1.0}
+        assert {name: one[name] for name in told} == pytest.approx(told, rel=1e-7)
+        assert start <= (one["peak_time"] or 0.0) < end
+    first = {name: contacts[0][name] for name in ("duration", "restitution", "peak_force", "peak_depth")}
+    assert {name: found.quantities[name] for name in first} == first
 
 
 @pytest.mark.parametrize("shape", ["punch", "sphere"])

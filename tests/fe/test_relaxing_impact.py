@@ -23,6 +23,7 @@ from fe_contact.march.impact import step_length
 from fe_contact.plastic.impact import YIELDING
 from fe_contact.relaxing_impact import RELAXING, Instant, Marcher, plan
 from fe_contact.settings import Numerics, WaveNumerics
+from fe_contact.solids import relaxing
 from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.relaxing import Fading, FadingLaw, Relaxing, doubled, green, second
 from fe_contact.steppers.steps import Strike
@@ -147,6 +148,23 @@ def test_what_bends_the_tangent_of_a_body_that_relaxes_drifts_with_its_gradient_
     for row, way in enumerate(np.eye(5)):
         above, below = (material.respond(place + sign * small * way[:, None], state).pulls for sign in (1.0, -1.0))
         assert found.drifts[:, row] == pytest.approx((above - below) / (2.0 * small), rel=1e-7, abs=1e-7)
+
+
+def test_stresses_and_strains_are_those_of_the_motion_as_a_whole() -> None:
+    """In three dimensions: P = F S and E = (F^T F - 1)/2, of the hoop too."""
+    rng = np.random.default_rng(6)
+    gradient, stress = rng.uniform(-0.3, 0.3, 5), rng.normal(size=4)
+    motion, pressed = np.eye(3), np.zeros((3, 3))
+    motion[:2, :2] += gradient[:4].reshape(2, 2)
+    motion[2, 2] += gradient[4]
+    rr, zz, tt, rz = stress
+    pressed[:2, :2], pressed[2, 2] = [[rr, rz], [rz, zz]], tt
+    first, strain = motion @ pressed, 0.5 * (motion.T @ motion - np.eye(3))
+    asked = np.array([*first[:2, :2].ravel(), first[2, 2]])
+    assert relaxing._first(stress, gradient) == pytest.approx(asked)
+    assert second(asked, gradient) == pytest.approx(stress)
+    assert green(gradient) == pytest.approx([strain[0, 0], strain[1, 1], strain[2, 2], strain[0, 1]])
+    assert doubled(stress, green(gradient)) == pytest.approx(np.sum(pressed * strain))
 
 
 def test_a_turn_does_not_relax() -> None:

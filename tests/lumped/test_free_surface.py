@@ -39,6 +39,10 @@ def test_a_free_surface_and_its_memories_follow_the_exponential_of_their_matrix(
         for time in 10.0 ** rng.uniform(-3.0, 1.0, 3):
             exact = expm(rates(modulus) * time) @ start
             assert surface.at(time) == pytest.approx(exact, rel=0.0, abs=1e-10 * start.max()), (modulus, time)
+        times = 10.0 ** rng.uniform(-3.0, 1.0, (2, 3))
+        many = surface.at(times)
+        assert many[:, 1, 2] == pytest.approx(surface.at(times[1, 2]), rel=1e-12)
+        assert many.shape == (1 + terms, 2, 3)
 
 
 def test_without_a_dashpot_beside_it_no_force_is_left_at_any_time() -> None:
