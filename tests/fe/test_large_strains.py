@@ -241,6 +241,8 @@ def test_a_block_pressed_deep_presses_by_the_slope_of_its_least_energy(name: str
         slope = (least(along + small)[0] - least(along - small)[0]) / (2.0 * small)
         assert force * modulus == pytest.approx(-4.0 * slope, rel=1e-6)
         assert radius == pytest.approx(math.sqrt(4.0 / math.pi) * least(along)[1], rel=1e-6)
+    beside = press_block(Indenter(block, material, Plane()), block, np.array([1e-9, 0.2]))
+    assert beside.force[1] == pytest.approx(found.force[2], rel=1e-12), "whatever depths are pressed beside it"
 
 
 def test_a_block_that_softens_is_pressed_to_where_its_waves_end_and_the_least_depth_beyond_is_told() -> None:
@@ -911,6 +913,27 @@ def test_depths_are_pressed_finer_until_the_impact_meets_its_tolerance(
     monkeypatch.setattr(large_strains, "depth_reached", lambda scene: 0.4 * scene.profile.tip_radius)
     assert run(scene, tolerance=1e-2).converged == converged
     assert len(asked) == (2 if lessened else 1)
+
+
+def test_a_curve_errs_by_the_worst_of_its_depths_and_by_what_a_polynomial_less_changes_between_them(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of d^1.5, which ripples by Chebyshev's polynomial of the seventh degree in the logarithm of the depth."""
+    scene, ripple = Scene.load("polymer-sphere-finite"), 1e-3
+
+    def indented(indenter: Indenter, depths: tuple[float, ...], given: Given, progress: object) -> Indentation:
+        depth, bar = np.array(depths), np.linspace(1e-3, 4e-3, len(depths))
+        place = 1.0 - np.log(depth / depth[-1]) / np.log(depth[0] / depth[-1])
+        force = depth**1.5 * np.exp(ripple * np.cos(7.0 * np.arccos(np.clip(2.0 * place - 1.0, -1.0, 1.0))))
+        budget = {"mesh": bar, "penalty": 0.5 * bar[::-1]}
+        return Indentation(indenter, "fe", 1.0, 1e-2, depth, force, np.sqrt(depth), 1.5 * bar * force, budget)
+
+    monkeypatch.setattr(large_strains, "indent", indented)
+    known = large_strains._known(scene, 1e-3, {}, silent)
+    assert known.errors["mesh"] == pytest.approx(4e-3)
+    assert known.errors["penalty"] == pytest.approx(2e-3)
+    assert known.errors["curve"] == pytest.approx(ripple, rel=0.2), "the sixth degree has nothing of it"
+    assert known.relative == pytest.approx(6e-3)
 
 
 def test_an_impact_on_a_known_curve_is_followed_to_a_hundredth_of_the_tolerance(

@@ -235,18 +235,19 @@ def test_what_rings_at_both_ends_of_a_contact_is_the_line_beside_it_that_jumps_f
     ([4.0, 4.0, 4.0, 4.0, 4.0, 0.0], 4.7, 4.0),  # a front came between two rows
     ([5.0, 4.0, 3.0, 2.0, 1.0, 0.0], 4.9, None),  # comes to nothing by itself
 ])  # fmt: skip
+@pytest.mark.parametrize("unit", [1e-3, 1.0])
 def test_a_contact_ends_with_the_front_that_takes_its_force(
-    forces: list[float], end: float, drop: float | None
+    forces: list[float], end: float, drop: float | None, unit: float
 ) -> None:
     """Two rows of that time where it drops, from where it was going; in units of a step, one before it has left."""
-    time = np.arange(6.0)
-    rows, found = _bar_ended(np.array([time, 2.0 * time, -time, np.array(forces), 3.0 * time]), 4.7 if drop else end)
+    time, pushed = np.arange(6.0), unit * np.array(forces)
+    rows, found = _bar_ended(np.array([time, 2.0 * time, -time, pushed, 3.0 * time]), 4.7 if drop else end)
     assert found == end
     np.testing.assert_allclose(rows[DEPTH], 2.0 * rows[TIME], rtol=1e-12)
     kept = int(np.ceil(end))
     ends = [end] if drop is None else [end, end]
     np.testing.assert_allclose(rows[TIME], [*time[:kept], *ends], rtol=1e-12)
-    np.testing.assert_allclose(rows[FORCE], [*forces[:kept], *([] if drop is None else [drop]), 0.0], atol=1e-12)
+    np.testing.assert_allclose(rows[FORCE], [*pushed[:kept], *([] if drop is None else [unit * drop]), 0.0], atol=1e-12)
 
 
 @pytest.mark.parametrize("gravity", [0.0, 9.81])
