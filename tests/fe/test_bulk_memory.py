@@ -114,6 +114,21 @@ def test_the_ratios_of_a_dashpot_are_known_from_the_first_step_on(steps: int, sh
     assert min(1e-6, first / 30.0) <= Pace.of(numerics).shortest <= 1.2 * first, "and not from far before it on"
 
 
+@pytest.mark.parametrize("steps", [20, 200])
+def test_the_ratios_of_a_fluid_are_known_from_a_millionth_of_a_contact_to_fifty_of_them(steps: int) -> None:
+    """It is the softer the longer a step is, as the last ones of a long motion in few steps are, and the first ones of
+    many, or one that an end cuts. By hand: of a branch that strains evenly the mean of what is left of it.
+    """
+    numerics = plan(Scene.load("polymer-layer"), {"elements_per_contact": 2.0, "scheme": "backward_euler"}).numerics
+    times = (2e-7 * numerics.contact_time, numerics.contact_time)
+    shear = Relaxation(0.0, (4e5, 1e5), times)
+    low, high = Pace.of(numerics.varied(steps=steps)).ratios(Moduli(Relaxation(1e9), shear))
+    for length in (1e-6, 0.3, 50.0):
+        over = length * numerics.contact_time / np.array(times)
+        ratio = np.array([4e5, 1e5]) @ ((1.0 - np.exp(-over)) / over) / 1e9
+        assert 0.999 * low <= ratio <= 1.001 * high
+
+
 def test_more_ratios_make_the_modes_better_by_orders(monkeypatch: pytest.MonkeyPatch) -> None:
     body = BODIES["bonded"]
     operator = operator_of(body, poisson(0.2))

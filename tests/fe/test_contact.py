@@ -117,6 +117,16 @@ def test_what_claims_to_have_converged_balances_whatever_the_penalty(seed: int, 
         assert np.abs(left - solution.signed_pressure / problem.penalty).max() <= 1e-5 * pressing
 
 
+@pytest.mark.parametrize(("off", "balances"), [(1e-7, True), (1e-4, False)])
+def test_whether_an_answer_balances_is_a_question_of_what_presses_whatever_stands_open(
+    off: float, balances: bool
+) -> None:
+    """Two springs of stiffness 2, pressed in by one: a penalty of 3 leaves 2/5. Past a rim points are far away."""
+    surface = PressedSurface(2.0 * np.eye(3), np.eye(3), np.ones(3))
+    problem = ContactProblem(surface, np.array([1.0, 1.0, -1e3]), 3.0)
+    assert contact._balances(problem, np.array([0.4, 0.4 + off, -1e3])) == balances
+
+
 def test_a_penalty_beyond_all_digits_is_refused() -> None:
     """All random surfaces answer where digits are left, few without."""
     problems = [random_problem(seed) for seed in range(60)]

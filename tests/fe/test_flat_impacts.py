@@ -23,7 +23,7 @@ from fe_contact.reference import solve
 from fe_contact.schemes.base import SCHEMES
 from fe_contact.settings import Numerics
 from fe_contact.steppers.flat_end import FlatEnd, FlatStepper
-from fe_contact.steppers.steps import State, Step, Strike
+from fe_contact.steppers.steps import State, Step, Strike, Work
 from lumped import BadInput, Material, Model, NotReached, Relaxation, Result, Scene, laws, simulate
 from lumped.result.result import meets
 from lumped.scene.scene import Motion
@@ -328,3 +328,4 @@ def test_a_step_stands_where_its_scheme_reads_it(scheme: str, hertz_strike: Stri
     second = stepper.step(first.state, (first,), 0.03)
     assert first.radius_time == pytest.approx(0.01 * SCHEMES.get(scheme).sample)
     assert second.radius_time == pytest.approx(0.01 + 0.03 * SCHEMES.get(scheme).sample)
+    assert first.work == second.work == Work(steps=1, contact_problems=1, iterations=1)

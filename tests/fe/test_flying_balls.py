@@ -5,26 +5,30 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+import scipy.sparse as sparse
 import scipy.sparse.linalg as linalg
+from scipy.linalg import block_diag
 
+from fe_contact.assembly.forms import Array
 from fe_contact.budget.curve import Curve
 from fe_contact.cli import main
-from fe_contact.dynamics.body import undeformed
+from fe_contact.dynamics.body import BodyState, Part, undeformed
 from fe_contact.dynamics.march import Motion, march
 from fe_contact.methods import simulate
 from fe_contact.settings import RANGES, WaveNumerics
 from fe_contact.steppers.steps import Strike
 from fe_contact.waves.balls import Ball
 from fe_contact.waves.impact import choices_of, energies, motion, record
-from fe_contact.waves.moving import Moving
+from fe_contact.waves.moving import Flying, Moving, UnitBody, WaveSide, together
 from fe_contact.waves.targets import half_space, plane, sphere
 from fe_contact.waves.targets.base import too_fast
 from lumped import BadInput, Result, Scene
+from lumped.materials import Relaxation
 from lumped.materials.radiation import radiation_coefficient
 
 RADIUS, YOUNG, DENSITY = 2e-3, 2.06e11, 7850.0
@@ -397,3 +401,117 @@ def test_a_ball_that_rings_as_it_leaves_ends_its_contact_within_the_bar() -> Non
     assert found.value is not None
     assert found.error is not None
     assert 0.002 * known < abs(found.value - known) < found.error
+
+
+def side(seed: int, size: int, damped: bool) -> WaveSide:
+    """Any body of so many degrees of freedom, every other one along its axis; two surface nodes at three points."""
+    rng = np.random.default_rng(seed)
+
+    def matrix(rows: int, columns: int) -> sparse.csc_matrix:
+        return sparse.csc_matrix(rng.uniform(1.0, 2.0, (rows, columns)))
+
+    part = Part(matrix(size, size), Relaxation(float(seed)))
+    dashpots = matrix(size, size) if damped else None
+    trace = rng.uniform(0.0, 1.0, (3, 2))
+    return WaveSide(matrix(size, size), (part,), dashpots, matrix(size, 2), trace, np.arange(size) % 2.0)
+
+
+@pytest.mark.parametrize("damped", [(False, False, False), (False, True, False), (True, False, True)])
+def test_bodies_together_are_each_as_alone_but_for_the_overlap_between_them(damped: tuple[bool, bool, bool]) -> None:
+    """Which counts what the surface of each moves by; gravity pulls the first along its axis."""
+    sides = [side(seed, size, one) for seed, size, one in zip((1, 2, 3), (4, 2, 3), damped, strict=True)]
+    areas, clearance, carriers = np.array([1.0, 2.0, 3.0]), np.array([0.1, -0.2, 0.3]), np.ones((3, 1))
+    body = together(sides, 9.81, areas, clearance, carriers)
+    assert np.array_equal(body.mass.toarray(), block_diag(*(one.mass.toarray() for one in sides)))
+    whole = [np.zeros((4, 4)), np.zeros((2, 2)), np.zeros((3, 3))]
+    for place, (one, part) in enumerate(zip(sides, body.parts, strict=True)):
+        alone = one.parts[0]
+        blocks = [alone.stiffness.toarray() if k == place else none for k, none in enumerate(whole)]
+        assert np.array_equal(part.stiffness.toarray(), block_diag(*blocks))
+        assert part.relaxation is alone.relaxation
+    dashpots = [
+        none if one.dashpots is None else one.dashpots.toarray() for one, none in zip(sides, whole, strict=True)
+    ]
+    found = None if body.dashpots is None else body.dashpots.toarray()
+    assert np.array_equal(found, block_diag(*dashpots)) if any(damped) else found is None
+    assert body.gravity.tolist() == [0.0, 9.81, 0.0, 9.81, *np.zeros(5)]
+    assert not body.rigid.any()
+    displacement = np.random.default_rng(7).normal(size=9)
+    moved = np.split(displacement, [4, 6])
+    overlap = clearance - sum(one.trace @ (one.push.toarray().T @ of) for one, of in zip(sides, moved, strict=True))
+    assert body.pressing.overlap(displacement) == pytest.approx(overlap)
+    assert body.pressing.weights is areas
+    assert body.pressing.carriers is carriers
+
+
+def test_the_weights_of_a_centre_of_mass_are_shares_of_the_mass_that_moves_along_the_axis() -> None:
+    """Of a lumped mass each its own; none of a body that does not fly."""
+    lumped = replace(side(1, 4, False), mass=sparse.diags([1.0, 2.0, 3.0, 6.0]).tocsc())
+    assert lumped.mean == pytest.approx([0.0, 0.25, 0.0, 0.75])
+    assert not replace(lumped, axial=np.zeros(4)).mean.any()
+    coupled = side(2, 4, False)
+    carried = coupled.mass.toarray()[1::2, 1::2].sum(axis=1)
+    assert coupled.mean[1::2] == pytest.approx(carried / carried.sum()), "what moves alike everywhere moves so"
+    assert not coupled.mean[::2].any()
+
+
+def moved_so(moving: Moving, displacement: Array, velocity: Array) -> BodyState:
+    """Its state with elastic parts."""
+    motions, parts = np.zeros((3, 3, displacement.size)), moving.body.parts
+    motions[0, :2] = displacement, velocity
+    pulls = tuple(np.array([part.stiffness @ displacement]) for part in parts)
+    points = moving.body.pressing.weights.size
+    return BodyState(0.0, motions, (np.zeros((0, displacement.size)),) * len(parts), pulls, -np.ones(points))
+
+
+def test_a_rigid_striker_overlaps_by_its_depth_without_its_profile_and_what_the_body_gives_way() -> None:
+    """Heights of a sphere, of which none counts as more than the highest; it alone has a velocity, and a weight."""
+    scene = Scene.load("steel-ball-waves", {"model.gravity": 9.81})
+    radius = scene.profile.tip_radius
+    assert radius is not None
+    below, places = side(1, 4, False), radius * np.array([0.0, 0.1, 0.3])
+    heights = np.asarray(scene.profile.height(places))
+    moving = Moving.under(scene, below, places, np.ones(3), highest=float(heights[1:].mean()))
+    depth, into = 0.01, np.array([0.3, 0.1, -0.2, 0.4])
+    overlap = depth - np.array([0.0, heights[1], heights[1:].mean()]) - below.trace @ (below.push.toarray().T @ into)
+    assert moving.body.pressing.overlap(np.append(into, depth)) == pytest.approx(overlap)
+    assert moving.velocity.tolist() == [0.0] * 4 + [scene.velocity]
+    assert moving.body.gravity.tolist() == [0.0] * 4 + [9.81]
+    assert moving.body.rigid.tolist() == [0.0] * 4 + [scene.reduced_mass]
+    assert np.array_equal(moving.body.mass.toarray(), block_diag(below.mass.toarray(), [[0.0]]))
+    assert (moving.watch @ np.append(into, depth)).tolist() == [depth]
+    assert moving.in_striker(moved_so(moving, np.append(into, depth), np.append(into, 3.0))) == (
+        pytest.approx(0.5 * scene.reduced_mass * 9.0),
+        0.0,
+    )
+
+
+def test_a_flying_striker_has_the_motion_of_its_own_mass_and_its_own_springs() -> None:
+    """Of all degrees of freedom the first ones, with what they have in common; the rest is the target's."""
+    striker, struck = side(1, 4, False), side(2, 3, False)
+    body = together([striker, struck], 0.0, np.ones(3), np.zeros(3), None)
+    moving = Flying(body, 2.0, np.zeros(3), False, 4, np.arange(7.0), np.arange(7.0)[::-1])
+    displacement, velocity = np.random.default_rng(3).normal(size=(2, 7))
+    own = displacement[:4], velocity[:4]
+    moves = 0.5 * own[1] @ (striker.mass @ own[1])
+    stored = 0.5 * 1.0 * own[0] @ (striker.parts[0].stiffness @ own[0])
+    found = moving.in_striker(moved_so(moving, displacement, velocity))
+    assert found == (pytest.approx(moves), pytest.approx(stored))
+    assert moving.velocity == pytest.approx(2.0 * np.arange(7.0))
+    assert moving.watch @ displacement == pytest.approx([np.arange(7.0)[::-1] @ displacement])
+
+
+def test_forces_into_a_body_are_put_on_its_surface_nodes_and_values_back_on_all_of_them() -> None:
+    """Two degrees of freedom a node, along r and along the axis, of which some are held."""
+    none: Any = None
+    basis: Any = SimpleNamespace(N=5)
+    surface: Any = SimpleNamespace(dofs=np.array([3, 1, 4]))
+    unit = UnitBody(basis, surface, np.array([0, 2, 3]), "lumped", none, none)
+    assert unit.free.tolist() == [1, 4, 5, 6, 7, 8, 9]
+    assert unit.unknowns == 7
+    assert unit.axial.tolist() == [1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0]
+    free: Array = np.zeros(10)
+    free[[1, 4, 5, 6, 7, 8, 9]] = np.arange(1.0, 8.0)
+    assert np.array_equal(unit.everywhere(np.arange(1.0, 9.0)), free), "what follows is another's"
+    first = unit.everywhere(unit.pushed(1).toarray()[:, 0])
+    assert first.tolist() == [0.0] * 7 + [-1.0, 0.0, 0.0]

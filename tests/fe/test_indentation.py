@@ -24,6 +24,7 @@ from lumped.shapes.punch import Punch
 from lumped.targets import HalfSpace, Target
 from lumped.targets.layer import Layer
 from lumped.targets.ring import Ring
+from lumped.targets.sphere import SphereTarget
 from lumped.targets.washer import Washer
 
 RATIOS = (0.0, 0.2, 0.3, 0.4, 0.45, 0.49, 0.4999)
@@ -298,11 +299,12 @@ def test_a_pressure_that_is_infinite_at_a_rim_wants_a_stiffer_penalty(shape: Sha
     assert settings({"penalty": 7.0}, shape).penalty == 7.0
 
 
-def test_a_penalty_softens_contacts_of_every_width_alike() -> None:
+@pytest.mark.parametrize("target", [Layer(1.0, "bonded"), SphereTarget(1e3, "held")], ids=["layer", "ball"])
+def test_a_penalty_softens_contacts_of_every_width_alike(target: Target) -> None:
     """By springs of p E*/a under Hertz's pressure, 3/(2 pi p) of the force to first order: what a flat end of radius a
-    would feel of them. On a layer so thick that it is a half-space, on one mesh for both depths.
+    would feel of them. On a body so large that it is a half-space, on one mesh for both depths.
     """
-    case = Case(Sphere(1.0), Layer(1.0, "bonded"), 0.3, (1e-4, 4e-4))
+    case = Case(Sphere(1.0), target, 0.3, (1e-4, 4e-4))
     radii, penalties = np.array([0.01, 0.02]), (100.0, 400.0)
     soft, stiff = (
         press(

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.optimize import brentq, minimize_scalar
 from skfem import MeshTri
 
 from fe_contact import large_strains, run
@@ -19,8 +20,9 @@ from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import basis_on
 from fe_contact.indentation import expected, indent, settings
 from fe_contact.indentation import press as press_any
+from fe_contact.progress import silent
 from fe_contact.settings import Given
-from fe_contact.solids import pressing
+from fe_contact.solids import newton, pressing
 from fe_contact.solids.base import PointAnswer, State, elliptic
 from fe_contact.solids.block import press as press_block
 from fe_contact.solids.bulk import Bulk, Pattern
@@ -38,10 +40,11 @@ from fe_contact.solids.newton import (
 from fe_contact.solids.pressing import Reached, Solid, _core, _together, advanced, press
 from fe_contact.solids.rolled import Rolled
 from lumped import BadInput, Scene, laws
+from lumped.errors import NotReached
 from lumped.indentation import Indentation
 from lumped.materials import Material, Relaxation
 from lumped.materials.energies.base import ENERGIES, energy_of, strained
-from lumped.result.result import Quantity
+from lumped.result.result import Quantity, largest_bar
 from lumped.scene.indenter import Indenter
 from lumped.scene.tables import LawChoice, Model
 from lumped.shapes import Sphere
@@ -208,6 +211,50 @@ def test_a_block_pressed_by_little_is_a_spring(sides: str) -> None:
         indenter = Indenter(block, Material(Relaxation(1.0), nu, hyperelastic="neo_hooke"), Plane())
         change = press_block(indenter, block, depth).force / (4.0 * depth / 0.5) - 1.0
         assert abs(2.0 * change[0] - change[1]) < 1e-6
+
+
+@pytest.mark.parametrize("sides", ["free", "confined"])
+@pytest.mark.parametrize("name", ["neo_hooke", "yeoh"])
+def test_a_block_pressed_deep_presses_by_the_slope_of_its_least_energy(name: str, sides: str) -> None:
+    """By scipy, over the stretch across where sides are free: to 40 % of its thickness."""
+    block, material = Prism(4.0, 0.5, sides), Material(Relaxation(3.0), 0.3, hyperelastic=name)
+    shear, depth, small = 3.0 / 2.6, np.array([0.01, 0.1, 0.2]), 1e-5
+    lame = 2.0 * shear * 0.3 / 0.4
+
+    def energy(along: float, across: float) -> float:
+        gradient = np.array([across - 1.0, 0.0, 0.0, along - 1.0, across - 1.0])[:, None]
+        return float(strained(energy_of(name), gradient, shear, lame).energy[0])
+
+    def least(along: float) -> tuple[float, float]:
+        """And where."""
+        if sides == "confined":
+            return energy(along, 1.0), 1.0
+        found = minimize_scalar(
+            lambda across: energy(along, across), bounds=(0.9, 1.5), method="bounded", options={"xatol": 1e-9}
+        )
+        return float(found.fun), float(found.x)
+
+    found = press_block(Indenter(block, material, Plane()), block, depth)
+    modulus = 3.0 if sides == "free" else lame + 2.0 * shear
+    for deep, force, radius in zip(depth, found.force, found.contact_radius, strict=True):
+        along = 1.0 - deep / 0.5
+        slope = (least(along + small)[0] - least(along - small)[0]) / (2.0 * small)
+        assert force * modulus == pytest.approx(-4.0 * slope, rel=1e-6)
+        assert radius == pytest.approx(math.sqrt(4.0 / math.pi) * least(along)[1], rel=1e-6)
+    beside = press_block(Indenter(block, material, Plane()), block, np.array([1e-9, 0.2]))
+    assert beside.force[1] == pytest.approx(found.force[2], rel=1e-12), "whatever depths are pressed beside it"
+
+
+def test_a_block_that_softens_is_pressed_to_where_its_waves_end_and_the_least_depth_beyond_is_told() -> None:
+    """St Venant and Kirchhoff's, confined, nu = 0: down to a stretch of 1/sqrt(3); just before, it shears away."""
+    block, material = Prism(1.0, 2.0, "confined"), Material(Relaxation(1.0), 0.0, hyperelastic="st_venant_kirchhoff")
+    indenter, last = Indenter(block, material, Plane()), 2.0 * (1.0 - 1.0 / np.sqrt(3.0))
+    stretch = 1.0 - 0.94 * last / 2.0
+    found = press_block(indenter, block, np.array([0.94 * last]))
+    assert found.force == pytest.approx([0.5 * (stretch - stretch**3)], rel=1e-9)
+    with pytest.raises(BeyondRange) as ended:
+        press_block(indenter, block, np.array([1.2, 0.5, 1.01, 1.1]) * last)
+    assert ended.value.depth == pytest.approx(1.01 * last)
 
 
 def test_the_force_is_the_slope_of_the_energy() -> None:
@@ -628,6 +675,22 @@ def test_a_body_whose_energy_has_no_descent_is_lost_once_it_is_taken_as_at_rest(
     assert asked == [(False, False, 0), (False, False, 3), (True, True, 3)]
 
 
+@pytest.mark.parametrize("hasty", [True, False])
+def test_who_is_in_haste_gives_up_where_no_whole_steps_lead_to_an_equilibrium(
+    hasty: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Half the way is the better one then; else it is looked for by what lessens the energy, from where it began."""
+    start, at_last = np.array([0.3]), object()
+    encounter: Any = SimpleNamespace(at=lambda place, *given: SimpleNamespace(displacement=place, energy=1.0))
+    monkeypatch.setattr(newton, "_hastened", lambda *given: None)
+    monkeypatch.setattr(newton, "_descending", lambda here, *given: at_last if here.displacement is start else None)
+    if hasty:
+        with pytest.raises(EquilibriumLost, match="whole steps"):
+            balanced(encounter, start, 0.1, 500.0, hasty=True)
+        return
+    assert balanced(encounter, start, 0.1, 500.0) is at_last
+
+
 def descended(energy: Callable[[float], float], slope: float, way: float = 0.3) -> float:
     """Where the line search leaves a body of one displacement, from 0.7 on, of the ``way`` that Newton's step goes."""
     free: Any = SimpleNamespace(body=SimpleNamespace(free=np.array([1])))
@@ -689,6 +752,32 @@ def test_st_venants_material_bears_waves_along_the_stress_down_to_a_stretch(stre
     assert elliptic(tangent) == (3.0 * stretch**2 > 1.0)
 
 
+@pytest.mark.parametrize(("onwards", "borne"), [(0.62, True), (0.55, False), (-0.1, True)])
+def test_a_body_bears_waves_where_it_is_and_where_it_goes_on_to_unless_it_cannot_be_there(
+    onwards: float, borne: bool
+) -> None:
+    """St. Venant's, one point by its stretch 1 - depth, at depth 0.1 of itself; turned inside out it has no energy."""
+    response = Hyperelastic(energy_of("st_venant_kirchhoff"), 1.0, 0.0)
+
+    def answered(displacement: Array, law: Hyperelastic, state: State) -> Any:
+        gradient = np.array([0.0, 0.0, 0.0, displacement[0], 0.0])[:, None]
+        answer = law.respond(gradient, state)
+        return SimpleNamespace(answer=answer, energy=float(answer.energy[0]))
+
+    body = SimpleNamespace(core=SimpleNamespace(answered=answered), response=response)
+
+    def equilibrium(depth: float) -> Equilibrium:
+        encounter, displacement = SimpleNamespace(body=body), np.array([-depth])
+        loaded = answered(displacement, response, ())
+        balance: Any = SimpleNamespace(
+            encounter=encounter, displacement=displacement, depth=depth, state=(), loaded=loaded
+        )
+        return Equilibrium(balance, np.array([-1.0]), 1)
+
+    assert equilibrium(0.1).elliptic(1.0 - onwards) == borne
+    assert not equilibrium(0.45).elliptic(0.1), "here it does not"
+
+
 def test_waves_are_borne_where_the_acoustic_tensor_of_every_direction_is_definite() -> None:
     """Q_ik = C_ijkl N_j N_l of random tangents, a quarter of a degree apart; near to none it is left open."""
     rng, angle = np.random.default_rng(5), np.linspace(0.0, np.pi, 720, endpoint=False)
@@ -746,6 +835,32 @@ def test_an_elastic_impact_gives_back_all_of_it() -> None:
     assert abs(pressed - peak) < 2.0 * (quantities["peak_force"].error or 0.0)
 
 
+@pytest.mark.parametrize("gravity", [0.0, 0.01])
+def test_the_deepest_depth_is_where_a_body_has_taken_up_what_the_striker_brings(
+    gravity: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of an energy c d^2.5, in units of its own: its power leads there at once, or nearly where gravity adds to it."""
+    scene = Scene.load("polymer-sphere-finite", {"model.gravity": gravity, "model.direction": "down"})
+    unit, lead, tried = 0.01, 0.7, list[float]()
+    stiffness = scene.contact_modulus.relaxed * scene.geometry.shape.total * unit**3 / lead
+    c = 0.4 * 0.5 * scene.mass * scene.velocity**2 / (stiffness * 1e-3**2.5)
+
+    def advanced(before: object, depth: float, stiffness: float) -> Any:
+        tried.append(depth)
+        inner = depth / unit
+        return SimpleNamespace(
+            balance=SimpleNamespace(depth=inner, force=2.5 * c * unit**2.5 * inner**1.5, energy=c * depth**2.5)
+        )
+
+    solid = SimpleNamespace(unit=unit, lead=lead, dimension=2, advanced=advanced)
+    monkeypatch.setattr(large_strains.Solid, "of", lambda *given: solid)
+    exact = brentq(
+        lambda d: stiffness * c * d**2.5 - scene.mass * (0.5 * scene.velocity**2 + gravity * d), 1e-4, 1.0, xtol=1e-12
+    )
+    assert large_strains.depth_reached(scene) == pytest.approx(exact, rel=1e-3)
+    assert len(tried) <= (6 if gravity else 2)
+
+
 @pytest.mark.parametrize("error", [4e-3, -4e-3])
 @pytest.mark.parametrize("tilted", [False, True])
 def test_a_curve_that_errs_by_its_bars_leaves_the_impact_within_its_own(
@@ -788,6 +903,8 @@ def test_depths_are_pressed_finer_until_the_impact_meets_its_tolerance(
     def indented(indenter: Indenter, depths: tuple[float, ...], given: Given, progress: object) -> Indentation:
         asked.append(float(given["tolerance"]))
         depth = np.array(depths)
+        assert np.all(np.diff(depth) > 0.0), "each of them tells something"
+        assert depth[-1] == pytest.approx(1.02 * 0.4 * scene.profile.tip_radius), "a little deeper than it goes"
         force, radius = k * depth**1.5, np.sqrt(depth * scene.profile.tip_radius)
         bar = np.full(len(depths), asked[-1] if lessened else 1.1e-2)
         return Indentation(indenter, "fe", k, 1e-2, depth, force, radius, bar * force, {"mesh": bar})
@@ -796,6 +913,64 @@ def test_depths_are_pressed_finer_until_the_impact_meets_its_tolerance(
     monkeypatch.setattr(large_strains, "depth_reached", lambda scene: 0.4 * scene.profile.tip_radius)
     assert run(scene, tolerance=1e-2).converged == converged
     assert len(asked) == (2 if lessened else 1)
+
+
+def test_a_curve_errs_by_the_worst_of_its_depths_and_by_what_a_polynomial_less_changes_between_them(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of d^1.5, which ripples by Chebyshev's polynomial of the seventh degree in the logarithm of the depth."""
+    scene, ripple = Scene.load("polymer-sphere-finite"), 1e-3
+
+    def indented(indenter: Indenter, depths: tuple[float, ...], given: Given, progress: object) -> Indentation:
+        depth, bar = np.array(depths), np.linspace(1e-3, 4e-3, len(depths))
+        place = 1.0 - np.log(depth / depth[-1]) / np.log(depth[0] / depth[-1])
+        force = depth**1.5 * np.exp(ripple * np.cos(7.0 * np.arccos(np.clip(2.0 * place - 1.0, -1.0, 1.0))))
+        budget = {"mesh": bar, "penalty": 0.5 * bar[::-1]}
+        return Indentation(indenter, "fe", 1.0, 1e-2, depth, force, np.sqrt(depth), 1.5 * bar * force, budget)
+
+    monkeypatch.setattr(large_strains, "indent", indented)
+    known = large_strains._known(scene, 1e-3, {}, silent)
+    assert known.errors["mesh"] == pytest.approx(4e-3)
+    assert known.errors["penalty"] == pytest.approx(2e-3)
+    assert known.errors["curve"] == pytest.approx(ripple, rel=0.2), "the sixth degree has nothing of it"
+    assert known.relative == pytest.approx(6e-3)
+
+
+def test_an_impact_on_a_known_curve_is_followed_to_a_hundredth_of_the_tolerance(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of k d^1.5 (1 + d/D), which stiffens, by energy and momentum."""
+    scene, stiff = Scene.load("polymer-sphere-finite"), 2e-3
+    k, energy = 4.0 / 3.0 * scene.contact_modulus.relaxed, 0.5 * scene.mass * scene.velocity**2
+
+    def indented(indenter: Indenter, depths: tuple[float, ...], given: Given, progress: object) -> Indentation:
+        depth = np.array(depths)
+        force = k * depth**1.5 * (1.0 + depth / stiff)
+        return Indentation(indenter, "fe", k, 1e-2, depth, force, np.sqrt(depth), np.zeros_like(depth))
+
+    monkeypatch.setattr(large_strains, "indent", indented)
+    deep = brentq(lambda d: k * d**2.5 * (0.4 + d / (3.5 * stiff)) - energy, 1e-6, 1.0, xtol=1e-15)
+    found = large_strains._known(scene, 1.02 * deep, {}, silent).impact(scene, 1e-6)
+    assert largest_bar(found.quantities) <= 1e-8
+    force, impulse = k * deep**1.5 * (1.0 + deep / stiff), 2.0 * scene.mass * scene.velocity
+    for name, value in (("peak_depth", deep), ("peak_force", force), ("impulse", impulse)):
+        assert found.quantities[name].value == pytest.approx(value, rel=1e-6), name
+
+
+def test_a_striker_that_goes_deeper_than_every_curve_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    """And what it takes to go less deep."""
+    scene, deepest = Scene.load("polymer-sphere-finite"), list[float]()
+
+    def curve(scene: Scene, deep: float, given: Given, progress: object) -> Any:
+        deepest.append(deep)
+        beyond: Any = SimpleNamespace(quantities={"peak_depth": Quantity(1.01 * deep, 0.0, "m")})
+        return SimpleNamespace(impact=lambda scene, tolerance: beyond)
+
+    monkeypatch.setattr(large_strains, "_known", curve)
+    monkeypatch.setattr(large_strains, "depth_reached", lambda scene: 1e-4)
+    with pytest.raises(NotReached, match=r"deeper than .* m; cure: a lower striker\.velocity or \.mass"):
+        run(scene, tolerance=1e-2)
+    assert np.all(np.diff(deepest) > 0.0)
 
 
 def press_once(scene: Scene, depth: float) -> float:

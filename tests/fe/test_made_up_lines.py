@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.variation import SAFETY
+from fe_contact.dynamics.march import Motion, Sample
 from fe_contact.waves.line import AWAY, UNSHOWN, Line, Run, _ended_later
 from fe_contact.waves.line_reading import (
     CLEAR,
@@ -17,10 +20,18 @@ from fe_contact.waves.line_reading import (
     FORCE,
     RINGING,
     TIME,
+    VELOCITY,
+    Ending,
     RodReading,
     _bar_ended,
     _cleaned,
+    _contact,
     _rod_ended,
+    _undented,
+    read_bar,
+    read_rod,
+    stopped,
+    with_fronts,
 )
 from fe_contact.waves.targets._block import plan
 from lumped import Scene
@@ -224,18 +235,19 @@ def test_what_rings_at_both_ends_of_a_contact_is_the_line_beside_it_that_jumps_f
     ([4.0, 4.0, 4.0, 4.0, 4.0, 0.0], 4.7, 4.0),  # a front came between two rows
     ([5.0, 4.0, 3.0, 2.0, 1.0, 0.0], 4.9, None),  # comes to nothing by itself
 ])  # fmt: skip
+@pytest.mark.parametrize("unit", [1e-3, 1.0])
 def test_a_contact_ends_with_the_front_that_takes_its_force(
-    forces: list[float], end: float, drop: float | None
+    forces: list[float], end: float, drop: float | None, unit: float
 ) -> None:
     """Two rows of that time where it drops, from where it was going; in units of a step, one before it has left."""
-    time = np.arange(6.0)
-    rows, found = _bar_ended(np.array([time, 2.0 * time, -time, np.array(forces), 3.0 * time]), 4.7 if drop else end)
+    time, pushed = np.arange(6.0), unit * np.array(forces)
+    rows, found = _bar_ended(np.array([time, 2.0 * time, -time, pushed, 3.0 * time]), 4.7 if drop else end)
     assert found == end
     np.testing.assert_allclose(rows[DEPTH], 2.0 * rows[TIME], rtol=1e-12)
     kept = int(np.ceil(end))
     ends = [end] if drop is None else [end, end]
     np.testing.assert_allclose(rows[TIME], [*time[:kept], *ends], rtol=1e-12)
-    np.testing.assert_allclose(rows[FORCE], [*forces[:kept], *([] if drop is None else [drop]), 0.0], atol=1e-12)
+    np.testing.assert_allclose(rows[FORCE], [*pushed[:kept], *([] if drop is None else [unit * drop]), 0.0], atol=1e-12)
 
 
 @pytest.mark.parametrize("gravity", [0.0, 9.81])
@@ -248,3 +260,152 @@ def test_a_rod_that_has_left_is_told_where_and_as_fast_as_it_was_when_it_left(gr
     np.testing.assert_array_equal(found[:, :-1], rows[:, :3])
     assert found[:, -1] == pytest.approx([end, 0.7, -1.5, 0.0, 0.0])
     np.testing.assert_array_equal(rows[TIME], time)
+
+
+@pytest.mark.parametrize("spoiled", [0, 2])
+def test_forces_before_and_behind_a_front_are_read_off_the_steps_beside_it(spoiled: int) -> None:
+    """Parabolas from front to front, the second of which would come to pull: nothing does. Behind a front in its own
+    step the march has the mean, and in those that are spoiled anything.
+    """
+    time, fronts = np.arange(30.0), np.array([0, 10, 20])
+    pieces = [lambda t: 9.0 - 0.3 * t + 0.01 * t**2, lambda t: 6.0 - 0.05 * (t - 9.0) ** 2, lambda t: 2.0 + 0.1 * t]
+    force = np.concatenate([piece(time[10 * k : 10 * k + 10]) for k, piece in enumerate(pieces)])
+    for front in fronts:
+        force[front : front + spoiled + 1] = 99.0
+    force[-1] = 0.0
+    rows = np.array([time, 2.0 * time, -time, force, 3.0 * time])
+    found = with_fronts(rows, fronts, spoiled)
+    times, forces = list[float](), list[float]()
+    for k, piece in enumerate(pieces):
+        inside = [10.0 * k, *np.arange(10.0 * k + spoiled + 1.0, 10.0 * k + 10.0)] + [10.0 * k + 10.0] * (k < 2)
+        times += inside
+        forces += [max(float(piece(at)), 0.0) for at in inside]
+    forces[-1] = 0.0
+    assert found[TIME].tolist() == times
+    assert found[FORCE] == pytest.approx(np.array(forces), abs=1e-9)
+    assert found[DEPTH] == pytest.approx(2.0 * found[TIME])
+    assert min(forces[:-1]) == 0.0
+
+
+@pytest.mark.parametrize(("end", "kept"), [(3.4, 4), (3.0, 3), (7.0, 6)])
+def test_rows_are_told_up_to_an_end_within_the_last_step_or_as_far_as_the_march_went(end: float, kept: int) -> None:
+    time = np.arange(6.0)
+    rows = np.array([time, time**2, -time, 5.0 * time, 3.0 * time])
+    found = stopped(rows, end)
+    np.testing.assert_array_equal(found[:, :kept], rows[:, :kept])
+    assert found.shape[1] == kept + (end < 5.0)
+    if end < 5.0:
+        line = np.interp(end, time, time**2)
+        assert found[:, -1] == pytest.approx([end, line, -end, 5.0 * end, 3.0 * end])
+
+
+@pytest.mark.parametrize(
+    ("gone", "again", "read"), [(0.3, 9.0, 0.3), (0.95, 9.0, 0.95), (0.3, 0.8, 0.3), (1.7, 9.0, 1.0), (-0.2, 9.0, 1.0)]
+)
+def test_a_dent_comes_to_nothing_where_its_parabola_first_does_within_a_step_of_what_still_presses(
+    gone: float, again: float, read: float
+) -> None:
+    """In steps of any length, from the last row that is pressed, the one before the last; else a step after it."""
+    time = 0.2 * np.arange(7.0)
+    dent = 1e-3 * (time - time[-2] - 0.2 * gone) * (time - time[-2] - 0.2 * again)
+    assert _undented(np.array([*np.zeros((1, 7)) + time, *np.zeros((3, 7)), dent])) == pytest.approx(
+        time[-2] + 0.2 * read, rel=1e-9
+    )
+
+
+@pytest.mark.parametrize("gravity", [0.0, 0.4])
+def test_a_contact_is_told_by_its_own_rows_and_by_the_impulse_of_its_own_force(gravity: float) -> None:
+    """An even force over three units of time, between two that are none of its own; by hand."""
+    start, end, came, force = 2.0, 5.0, 1.5, 2.0
+    time = np.linspace(0.0, 7.0, 71)
+    own = (time >= start) & (time <= end)
+    rows = np.array([time, 0.3 - 0.1 * (time - 3.0) ** 2, np.full(71, came), 2.5 * force * ~own + force * own, time])
+    impulses = 7.0 + force * np.clip(time - start, 0.0, end - start)
+    found = _contact(rows, time, impulses, (start, end), MASS, gravity)
+    left = came + gravity * 3.0 - force * 3.0 / MASS
+    assert found == {
+        "start": start,
+        "duration": 3.0,
+        "velocity": pytest.approx(came),
+        "restitution": pytest.approx(-left / came, rel=1e-9),
+        "peak_force": force,
+        "peak_time": start,
+        "peak_depth": pytest.approx(0.3),
+    }
+    rows[VELOCITY] = 2.0 * time
+    assert _contact(rows, time, impulses, (start, end), MASS, gravity)["velocity"] == pytest.approx(2.0 * start)
+
+
+@pytest.mark.parametrize("impacts", [1, 2])
+def test_contacts_are_over_when_the_last_of_them_is_open_for_longer_than_a_pause(impacts: int) -> None:
+    """One that opens for less is the same contact: of 1 pressed to 3, 4 to 6, and from 9 on to 10, in pauses of 1.5."""
+    pressed = [1, 2, 3, 4, 5, 6, 9, 10]
+    ending = Ending(impacts, pause=1.5)
+    told = list[int]()
+    for time in range(14):
+        sample: Any = SimpleNamespace(time=float(time) + 0.3 * (time in (4, 5)), force=float(time in pressed))
+        told += [time] * ending(sample)
+    assert told == ([8] if impacts == 1 else [12, 13])
+
+
+def test_a_bar_that_touches_twice_is_told_by_both_contacts_without_their_ringing() -> None:
+    """Even forces but for the steps at their ends; between them it flies, as gravity has it."""
+    time, spans, gravity = np.arange(103.0), [(1.0, 40.0), (61.0, 100.0)], 0.1
+    pressed = np.any([(time >= start) & (time <= end) for start, end in spans], axis=0)
+    near = np.min([np.minimum(np.abs(time - start), np.abs(time - end)) for start, end in spans], axis=0) < RINGING
+    force = pressed * (1.0 + 0.3 * near * (time % 2.0))
+    passed = sum(np.clip(time - start, 0.0, end - start) for start, end in spans)
+    velocity, none = SPEED + gravity * time - passed / 10.0, None
+    samples = tuple(
+        Sample(at, push, given, np.array([0.0 if push else -1.0]), np.ones(1), np.array([1e-9 if push else -1.0]),
+               np.array([0.1 * at]), np.array([speed]), none, 1)
+        for at, push, given, speed in zip(time, force, np.diff(passed, prepend=0.0), velocity, strict=True)
+    )  # fmt: skip
+    scene: Any = SimpleNamespace(motion=SimpleNamespace(impacts=2), gravity=gravity, end_time=200.0)
+    found, contacts = read_bar(Motion(samples, none, 1), 10.0, scene, 5.0, None)
+    assert found.separated
+    assert found.rows[FORCE].max() == pytest.approx(1.0)
+    assert found.quantities["impulse"] == pytest.approx(78.0)
+    for one, (start, end) in zip(contacts, spans, strict=True):
+        came = np.interp(start, time, velocity)
+        left = came + 39.0 * gravity - 3.9
+        told = {"start": start, "duration": 39.0, "velocity": came, "restitution": -left / came, "peak_force": 1.0}
+        assert {name: one[name] for name in told} == pytest.approx(told, rel=1e-7)
+        assert start <= (one["peak_time"] or 0.0) < end
+    first = {name: contacts[0][name] for name in ("duration", "restitution", "peak_force", "peak_depth")}
+    assert {name: found.quantities[name] for name in first} == first
+
+
+@pytest.mark.parametrize("shape", ["punch", "sphere"])
+@pytest.mark.parametrize("separated", [True, False])
+@pytest.mark.parametrize("gravity", [0.0, 50.0])
+def test_an_impact_on_a_rod_is_read_off_its_steps_as_an_even_force_moves_a_mass(
+    gravity: float, separated: bool, shape: str
+) -> None:
+    """By hand: it presses for six steps and a half, and no front comes back meanwhile; it ends in the seventh, or
+    in the sixth where the scene does.
+    """
+    step, last = 1e-4, 7.0 if separated else 5.4
+    changes = {"striker.shape": shape, "model.gravity": gravity, "motion.end_time": last * step}
+    scene = Scene.load("rod", {**changes, "model.profile": "parabola"})
+    mass, time, end = scene.reduced_mass, step * np.arange(np.ceil(last) + 1.0), 6.5 * step
+    force = 1.7 * mass * scene.velocity / end
+    for_so_long = np.minimum(time, end)
+    velocity = scene.velocity + gravity * time - force / mass * for_so_long
+    depth = (scene.velocity + 0.5 * gravity * time) * time - force / mass * for_so_long * (time - 0.5 * for_so_long)
+    none: Any = None
+    samples = tuple(
+        Sample(at, force * (at < end), 0.0, np.array([1e-3 * (end - at) / step]), np.zeros(1), np.array([end - at]),
+               np.array([deep]), np.array([speed]), none, 1)
+        for at, deep, speed in zip(time, depth, velocity, strict=True)
+    )  # fmt: skip
+    found = read_rod(Motion(samples, none, 1), scene, 40, separated)
+    until = end if separated else last * step
+    left = scene.velocity + gravity * until - force / mass * until
+    values = dict(found.quantities)
+    assert values["impulse"] == pytest.approx(force * until, rel=1e-9)
+    assert values["peak_force"] == pytest.approx(force)
+    assert values["duration"] == (pytest.approx(end) if separated else None)
+    assert values["restitution"] == (pytest.approx(-left / scene.velocity) if separated else None)
+    assert values["peak_depth"] == pytest.approx(0.5 * scene.velocity**2 / (force / mass - gravity), rel=1e-3)
+    assert found.force_at(np.array([2.5 * step])) == pytest.approx(force)

@@ -207,3 +207,7 @@ def test_under_a_flat_end_one_stiffness_tells_of_mesh_penalty_and_far_field_by_t
         assert isinstance(one, Softening)
         assert one.curve is value
         assert one.share == pytest.approx(1.25 * abs(error), rel=1e-2), cause
+    alike: Any = SimpleNamespace(surface=lambda one: surface(numerics))
+    for (one,) in certify._by_stiffness(alike, value, surface(numerics), numerics).values():
+        assert isinstance(one, Softening)
+        assert 0.0 < one.share < 1e-8, "by what rounding leaves, where nothing changes it"

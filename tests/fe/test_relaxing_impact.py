@@ -23,6 +23,7 @@ from fe_contact.march.impact import step_length
 from fe_contact.plastic.impact import YIELDING
 from fe_contact.relaxing_impact import RELAXING, Instant, Marcher, plan
 from fe_contact.settings import Numerics, WaveNumerics
+from fe_contact.solids import relaxing
 from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.relaxing import Fading, FadingLaw, Relaxing, doubled, green, second
 from fe_contact.steppers.steps import Strike
@@ -109,6 +110,16 @@ def test_a_volume_that_stands_apart_does_not_relax(name: str) -> None:
     assert abs(lasting.stress[3]) < 0.5 * abs(law.sudden.respond(stretch, ()).stress[3])
 
 
+@pytest.mark.parametrize("name", [name for name in ENERGIES.names if energy_of(name).splits])
+def test_a_sudden_strain_is_answered_by_shape_and_volume_as_by_both_in_one(name: str) -> None:
+    """Nothing has relaxed yet: of stress, energy and tangent, and of what bends that and how it drifts."""
+    law, fading = FadingLaw(Hyperelastic(energy_of(name), 1.0, 2.0), NETWORK, True), Fading.over(NETWORK, 1e-9)
+    gradient = np.random.default_rng(4).uniform(-0.2, 0.2, (5, 6))
+    apart, whole = law.over(fading).respond(gradient, fading.at_rest(4, 6)), law.sudden.respond(gradient, ())
+    for part in ("stress", "energy", "tangent", "pulls", "drifts"):
+        assert getattr(apart, part) == pytest.approx(getattr(whole, part), rel=1e-7, abs=1e-7), part
+
+
 @pytest.mark.parametrize("lame", [0.5, 2.0, 40.0])
 def test_where_all_relaxes_alike_what_lasts_is_a_share_of_all_and_what_fades_has_the_ratio_of_the_body(
     lame: float,
@@ -137,6 +148,23 @@ def test_what_bends_the_tangent_of_a_body_that_relaxes_drifts_with_its_gradient_
     for row, way in enumerate(np.eye(5)):
         above, below = (material.respond(place + sign * small * way[:, None], state).pulls for sign in (1.0, -1.0))
         assert found.drifts[:, row] == pytest.approx((above - below) / (2.0 * small), rel=1e-7, abs=1e-7)
+
+
+def test_stresses_and_strains_are_those_of_the_motion_as_a_whole() -> None:
+    """In three dimensions: P = F S and E = (F^T F - 1)/2, of the hoop too."""
+    rng = np.random.default_rng(6)
+    gradient, stress = rng.uniform(-0.3, 0.3, 5), rng.normal(size=4)
+    motion, pressed = np.eye(3), np.zeros((3, 3))
+    motion[:2, :2] += gradient[:4].reshape(2, 2)
+    motion[2, 2] += gradient[4]
+    rr, zz, tt, rz = stress
+    pressed[:2, :2], pressed[2, 2] = [[rr, rz], [rz, zz]], tt
+    first, strain = motion @ pressed, 0.5 * (motion.T @ motion - np.eye(3))
+    asked = np.array([*first[:2, :2].ravel(), first[2, 2]])
+    assert relaxing._first(stress, gradient) == pytest.approx(asked)
+    assert second(asked, gradient) == pytest.approx(stress)
+    assert green(gradient) == pytest.approx([strain[0, 0], strain[1, 1], strain[2, 2], strain[0, 1]])
+    assert doubled(stress, green(gradient)) == pytest.approx(np.sum(pressed * strain))
 
 
 def test_a_turn_does_not_relax() -> None:
@@ -357,6 +385,49 @@ def test_a_striker_that_leaves_within_a_step_is_slowed_by_half_of_the_force_that
     assert there.depth < 0.0
     assert unit * there.velocity == pytest.approx(-0.6 + length * (gravity - 0.5 * scale * 0.2 / mass))
     assert (there.force, there.impulse) == (0.0, 5.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Trending(OnSpring):
+    """Its contact ends as the trend says: after ``left``, s."""
+
+    left: float = 0.0
+
+    def _time_left(self, instants: list[Instant]) -> float | None:
+        return self.left
+
+
+@pytest.mark.parametrize("gravity", [0.0, 3.0])
+def test_a_contact_ends_as_a_force_that_falls_by_the_power_of_its_curve_moves_the_striker(
+    gravity: float, settings_of: Callable[..., Numerics]
+) -> None:
+    """F (1 - t/left)^(3/2) integrated twice by hand, in units of length and force of their own."""
+    unit, scale, mass, left = 0.02, 3.0, 0.4, 0.05
+    strike = Strike(lambda r: r**2, mass, 0.7, gravity, Relaxation(1.0), 10.0)
+    spring = on_spring(strike, settings_of(strike, steps=60), unit, scale)
+    found: Any = SimpleNamespace(balance=SimpleNamespace(displacement=np.zeros(1), touch=SimpleNamespace(energy=0.0)))
+    last = replace(spring._touch(), time=0.3, depth=1.5, velocity=-30.0, impulse=0.16, force=0.2, found=found)
+    march = Trending(**vars(spring), left=left)._record([spring._touch(), last], separated=True)
+    given, speed, force = scale * 0.16, -30.0 * unit, scale * 0.2
+    assert march.time == pytest.approx([0.0, 0.3, 0.35])
+    assert march.impulse == pytest.approx([0.0, given, given + force * left / 2.5])
+    end = 1.5 * unit + speed * left + 0.5 * gravity * left**2 - force / mass * left**2 / 3.5
+    assert march.depth == pytest.approx([0.0, 1.5 * unit, end], rel=1e-12)
+    out = 0.5 * mass * (speed + gravity * left - force / mass * left / 2.5) ** 2
+    assert march.energy["out"] == pytest.approx(out, rel=1e-12)
+
+
+def test_an_end_is_told_from_the_fourth_step_on_while_the_striker_leaves(
+    settings_of: Callable[..., Numerics],
+) -> None:
+    """By the power 3/2 of the time that is left; the fewest steps that a user may choose leave few to tell it."""
+    strike = Strike(lambda r: r**2, 0.4, 0.7, 0.0, Relaxation(1.0), 10.0)
+    spring = on_spring(strike, settings_of(strike, steps=8), 0.02, 3.0)
+    touch, times = spring._touch(), (0.0, 0.03, 0.05, 0.06, 0.065)
+    falling = [replace(touch, time=time, velocity=-1.0, force=(0.08 - time) ** 1.5) for time in times]
+    assert spring._time_left(falling) == pytest.approx(0.015, rel=1e-9)
+    assert spring._time_left(falling[:4]) is None
+    assert spring._time_left([*falling[:4], replace(falling[4], velocity=0.1)]) is None
 
 
 REFUSED = {

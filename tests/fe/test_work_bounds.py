@@ -201,6 +201,13 @@ def test_the_foretold_work_grows_with_unknowns_but_a_step_has_its_own() -> None:
     assert plan.Cost.of(200, numerics.varied(peak_share=1e-3), 1).steps > numerics.steps
 
 
+def test_a_body_with_waves_may_have_as_many_unknowns_as_one_without_and_not_many_more() -> None:
+    """Whose factors take a gigabyte; what is kept of a march as much again."""
+    plan.Cost(operators.MOST_UNKNOWNS, 100, 1.0).check()
+    with pytest.raises(WavesTooDear, match=r"\d\.\d GB"):
+        plan.Cost(2 * operators.MOST_UNKNOWNS, 100, 1.0).check()
+
+
 @pytest.mark.parametrize("name", ["ball-bouncing-waves", "polymer-layer-waves", "two-finite-spheres-waves"])
 def test_nothing_is_assembled_to_know_the_cost_of_waves(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """A body that is refused for its size takes no memory."""

@@ -26,8 +26,21 @@ from lumped.scene.tables import Motion
 from lumped.shapes.cone import Cone
 from lumped.shapes.power import PowerProfile
 from lumped.shapes.sphere import Sphere
+from lumped.solvers.hereditary.approach import approach
+from lumped.solvers.hereditary.march import Settings
 from lumped.solvers.hereditary.pieces import alone
-from lumped.solvers.mdr.nest import REST, Adaptive, Grid, Nest, Prescribed, coarse, limit, predicted_turn, problem_of
+from lumped.solvers.mdr.nest import (
+    REST,
+    Adaptive,
+    Grid,
+    Nest,
+    Prescribed,
+    coarse,
+    coarse_beyond,
+    limit,
+    predicted_turn,
+    problem_of,
+)
 from lumped.solvers.mdr.row import (
     SERIES_BELOW,
     Instant,
@@ -332,6 +345,21 @@ def test_the_bars_cover_the_poorer_of_the_two_integrations_too(
     assert off <= found.history.force_error.max()
 
 
+@pytest.mark.parametrize(("steps", "near"), [(-1.0, True), (0.01, True), (1.0, True), (3.0, False), (5.0, False)])
+def test_a_march_that_would_end_within_a_step_of_its_turn_goes_on_beyond_both(
+    steps: float, near: bool, impact: Callable[..., Scene]
+) -> None:
+    """By some steps, so that finer ones, which turn elsewhere, all rebound; else it ends where it is told."""
+    problem = problem_of(impact(0.5, (0.5,), (1.0,)))
+    *_, before, last, turn = (instant.time for instant in coarse(problem, 1.0, 16).approach)
+    end = turn + steps * (last - before)
+    track, beyond = coarse_beyond(problem, end, 16)
+    assert track.end is End.TIME
+    assert (track.rebound or track.approach)[-1].time == pytest.approx(beyond)
+    assert beyond == end or near
+    assert not near or 1.0 < (beyond - max(end, turn)) / (last - before) < 5.0
+
+
 def test_steps_at_given_instants_end_there_and_the_last_one_a_step_beyond() -> None:
     """So that the event which cuts it lies within a step as long as the others."""
     steps, now = Prescribed([1.0, 2.5, 4.0]), [0.0]
@@ -474,6 +502,18 @@ def test_only_a_dashpot_under_what_is_neither_cone_nor_parabola_needs_another_st
     shape = PowerProfile(1.0, power)
     assert _hereditary.problem_of(impact(1.0, viscosity=0.3, shape=shape)).rises_steeply == (power not in (1.0, 2.0))
     assert not _hereditary.problem_of(impact(1.0, (0.5,), (0.3,), shape=shape)).rises_steeply
+
+
+def test_an_approach_with_another_start_is_told_from_the_touch_on(impact: Callable[..., Scene]) -> None:
+    """Before the first of its pieces at the speed of touch, pressed by the dashpot, 2 a eta v, a ~ depth^(1/3)."""
+    problem = _hereditary.problem_of(impact(1.0, viscosity=0.3, shape=PowerProfile(1.0, 3.0)))
+    path = alone(approach(problem, 1.0, Settings(1e-6))).path
+    assert path.breaks[0] == 0.0
+    roots = path.breaks[1] * np.linspace(0.25, 1.0, 4)
+    depth, velocity, _, force = path.at(roots)
+    assert velocity == pytest.approx(1.0)
+    assert depth == pytest.approx(roots**2)
+    assert force == pytest.approx(force[-1] * (depth / depth[-1]) ** (1.0 / 3.0), rel=1e-2)
 
 
 def test_a_sphere_begins_as_the_parabola_that_it_is_at_its_tip(impact: Callable[..., Scene]) -> None:

@@ -54,6 +54,15 @@ def test_a_path_says_the_same_of_one_place_and_of_many() -> None:
         assert path.state(places[i]) == pytest.approx(whole[:, i], rel=0.0, abs=1e-12)
 
 
+@pytest.mark.parametrize("level", [-1.7, 0.0, 0.6])
+def test_a_field_falls_to_a_level_where_its_last_piece_first_reaches_it(level: float) -> None:
+    """1 - s^2, s from the start of that piece to 2, which the piece before falls to as well; at its end it is -3."""
+    before, last = np.array([0.0, -2.0, 0.0]), reference.poly2cheb([0.0, -2.0, -1.0])
+    path = Path(np.array([0.0, 1.0, 3.0]), np.array([before, last])[:, None], 3.0)
+    assert path.fall(0, level) == pytest.approx(1.0 + np.sqrt(1.0 - level), rel=1e-14)
+    assert path.fall(0, -3.1) is None
+
+
 @pytest.mark.parametrize("count", [1, 2, 3, 8, 12, 16, 18])
 def test_the_nodes_integrate_polynomials_as_well_as_rounding_tells(count: int) -> None:
     """Over the step up to the power 2 s - 2, to every node up to s - 1; s of two and of three are in every table."""

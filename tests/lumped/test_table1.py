@@ -41,13 +41,15 @@ def test_eight_rows_in_their_order() -> None:
 
 @pytest.mark.parametrize("row", ROWS.values(), ids=lambda row: row.name)
 def test_depths_are_compared_with_the_length_that_is_named(row: TableRow) -> None:
-    """Two bodies: the radius of the gap between them, 1/R = 1/R1 + 1/R2."""
+    """Two bodies: the radius of the gap between them, 1/R = 1/R1 + 1/R2; where nothing is named a metre."""
     own = row.to_dict()
     if row.bodies == 2:
         curvature = sum(1.0 / size for name, size in own.items() if "radius" in name)
         assert row.length == pytest.approx(1.0 / curvature, rel=1e-14)
     elif row.length_name:
         assert row.length == own[row.length_name]
+    else:
+        assert row.length == 1.0
 
 
 @pytest.mark.parametrize("row", ROWS.values(), ids=lambda row: row.name)
