@@ -24,6 +24,7 @@ from fe_contact.contact.enforcement import exact
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.fields import felt, peak_step
 from fe_contact.reference import solve
+from fe_contact.schemes.base import SCHEMES
 from fe_contact.steppers.stacked import BodySide, Stacked, stacked
 from fe_contact.steppers.steps import Strike
 from fe_contact.steppers.struck import Deformable
@@ -299,6 +300,17 @@ def test_what_presses_two_bodies_moves_each_by_its_own_modulus() -> None:
     np.testing.assert_allclose(moved, one.displaced(operator.weights * pressure), rtol=1e-9)
     found = exact.enforce(ContactProblem(two, moved, np.inf, 0.0), np.ones(pressure.size, dtype=bool))
     np.testing.assert_allclose(found.pressure, pressure, rtol=1e-6)
+
+
+def test_two_bodies_together_sink_in_by_what_each_does() -> None:
+    """Of moduli 5/4 and 5, in series 1, in one step by the pressure at its end: as one body of that modulus."""
+    operator = surface_operator(meshes.half_space(4.0, 20.0), 4, 0.3).operator
+    sides = tuple(BodySide(operator, Relaxation(young), operator.trace) for young in (1.25, 5.0))
+    body = Stacked(operator, sides, 0.05).body(Relaxation(1.0), SCHEMES.get("backward_euler"), 1.0)
+    pressure = 2.0 - operator.points
+    found, _ = body.after(body.at_rest(), body.offer(body.at_rest(), 1e-3), pressure)
+    alone = stacked(operator, (BodySide(operator, Relaxation(1.0), operator.trace),), (1.0,))
+    np.testing.assert_allclose(body.displacement(found), alone.displaced(operator.weights * pressure), rtol=1e-9)
 
 
 def bends(*radii: float) -> float:
