@@ -114,6 +114,16 @@ def test_the_ratios_of_a_dashpot_are_known_from_the_first_step_on(steps: int, sh
     assert min(1e-6, first / 30.0) <= Pace.of(numerics).shortest <= 1.2 * first, "and not from far before it on"
 
 
+@pytest.mark.parametrize(("steps", "share"), [(40, 0.5), (1024, 0.5), (8192, 0.5), (4096, 0.2), (1024, 0.1)])
+def test_the_shortest_step_is_a_decade_below_the_first_and_no_longer_than_a_millionth(steps: int, share: float) -> None:
+    """Within one of it, so that the motions of a body are those of other runs too."""
+    chosen = plan(Scene.load("polymer-layer"), {"elements_per_contact": 2.0}).numerics
+    pace, first = Pace.of(chosen.varied(steps=steps, peak_share=share)), step_length(0, steps, share)
+    assert (pace.scheme, pace.contact_time) == (chosen.scheme, chosen.contact_time)
+    assert np.log10(pace.shortest) == pytest.approx(round(np.log10(pace.shortest)), abs=1e-9)
+    assert min(1e-6, first / 15.0) <= pace.shortest <= min(1e-6 * (1.0 + 1e-9), 1.2 * first)
+
+
 @pytest.mark.parametrize("steps", [20, 200])
 def test_the_ratios_of_a_fluid_are_known_from_a_millionth_of_a_contact_to_fifty_of_them(steps: int) -> None:
     """It is the softer the longer a step is, as the last ones of a long motion in few steps are, and the first ones of

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from skfem import Basis, ElementTriP4, FacetBasis
+from skfem import Basis, ElementTriP1, ElementTriP4, FacetBasis, MeshTri
 
 import meshes
-from fe_contact.assembly.far_field import BEYOND, boussinesq, flamant, plane_robin, robin
+from fe_contact.assembly.far_field import BEYOND, boussinesq, dashpots, flamant, plane_robin, robin
 from fe_contact.assembly.forms import isotropic
 from fe_contact.assembly.operators import basis_on, boundary
 from fe_contact.budget.certify import certify
@@ -161,6 +161,22 @@ def test_a_line_force_is_carried_and_obeys_hooke(nu: float) -> None:
         stress = law @ np.array([xx, zz, 0.0, zx + xz])
         for direction, wanted in (([1.0, 0.0], stress[[0, 3]]), ([0.0, 1.0], stress[[3, 1]])):
             np.testing.assert_allclose(flamant(place, np.array(direction), nu, 7.0)[1], wanted, rtol=1e-3, atol=2e-5)
+
+
+@pytest.mark.parametrize("nu", POISSON)
+def test_a_boundary_takes_waves_of_either_kind_by_their_own_speed(nu: float) -> None:
+    """Of a cone around the axis, its slant sqrt(2) long: c_p of what moves along its normal, c_s of what moves along
+    the slant, and of the power of neither anything by the other.
+    """
+    mesh = MeshTri(np.array([[0.0, 1.0, 0.0], [0.0, 0.0, -1.0]]), np.array([[0], [1], [2]]))
+    slant = mesh.facets_satisfying(lambda x: np.isclose(x[0] - x[1], 1.0))
+    facets = FacetBasis(mesh, ElementTriP1(), facets=slant, intorder=4)
+    found = dashpots(facets, nu).toarray()
+    young = 1.0 - nu**2
+    squares = np.array([young * (1.0 - nu) / (1.0 + nu) / (1.0 - 2.0 * nu), young / (2.0 * (1.0 + nu))])
+    ways = np.tile(np.array([[1.0, -1.0], [1.0, 1.0]]) / np.sqrt(2.0), 3)
+    assert ways @ found @ ways.T == pytest.approx(np.pi * np.sqrt(2.0) * np.diag(np.sqrt(squares)), rel=1e-12, abs=1e-9)
+    assert found == pytest.approx(found.T, abs=1e-12)
 
 
 @pytest.mark.family

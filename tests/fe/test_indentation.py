@@ -13,7 +13,7 @@ import pytest
 from fe_contact import indentation
 from fe_contact.bodies.pressing import PressedDepths
 from fe_contact.errors import BodyTooThin, ContactTooWide
-from fe_contact.indentation import CAUSES, FEWEST, Indenting, _accompanied, indent, press, settings
+from fe_contact.indentation import CAUSES, FEWEST, Indenting, _accompanied, expected, indent, press, settings
 from fe_contact.settings import Numerics, tolerance_of
 from lumped import BadInput, Material, Relaxation
 from lumped.indentation import Indentation
@@ -297,6 +297,19 @@ def test_a_tolerance_asks_for_as_many_elements_as_the_order_of_the_mesh_needs(to
 def test_a_pressure_that_is_infinite_at_a_rim_wants_a_stiffer_penalty(shape: Shape, stiffer: float) -> None:
     assert settings({}, shape).penalty == stiffer * settings({}, Sphere(1.0)).penalty
     assert settings({"penalty": 7.0}, shape).penalty == 7.0
+
+
+def test_contacts_of_depths_a_hundred_thousand_apart_are_foreseen_together() -> None:
+    """The least as under a cone on a half-space, 2/pi of where the surfaces overlap, the widest as on the layer."""
+    depths = np.array([1e-6, 0.1])
+    on_layer, deep = (Indenter(shaped("cone", 30.0), Material(Relaxation(1.0), 0.3), target)
+                      for target in (Layer(1.0, "bonded"), HalfSpace()))  # fmt: skip
+    numerics = settings({}, on_layer.shape, False)
+    least, widest = expected(on_layer, depths, numerics)
+    assert least == pytest.approx(expected(deep, depths, numerics)[0], rel=0.1)
+    assert widest == pytest.approx(
+        float(on_layer.target.load_curve(on_layer.profile, 0.3).contact_radius(0.1)), rel=0.1
+    )
 
 
 @pytest.mark.parametrize("target", [Layer(1.0, "bonded"), SphereTarget(1e3, "held")], ids=["layer", "ball"])

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brentq, minimize_scalar
-from skfem import MeshTri
+from skfem import Basis, ElementTriP2, MeshTri
 
 from fe_contact import large_strains, run
 from fe_contact.assembly.forms import Array
@@ -200,6 +200,19 @@ def test_slopes_on_a_ring_laid_flat_turn_with_it() -> None:
     gradient = np.array([rolled.place(flat + one) - rolled.place(flat - one) for one in shifts]) / (2.0 * step)
     found = rolled.slopes(np.moveaxis(gradient, 1, 2), flat)
     assert found == pytest.approx(np.broadcast_to(np.eye(2)[:, None], found.shape), abs=1e-8)
+
+
+def test_a_ring_laid_flat_has_the_area_and_the_stretch_of_the_ring() -> None:
+    """Both halves of a sixth of it, from radius 2 to 3; it is wider by a hundredth all round."""
+    arc = 2.0 * np.pi / 6.0
+    mesh = MeshTri.init_tensor(np.linspace(0.0, arc, 11), np.linspace(-1.0, 0.0, 9))
+    basis, rolled = Basis(mesh, ElementTriP2(), intorder=8), Rolled(2.0)
+    bulk = Bulk.of(basis, True, np.arange(mesh.nelements), rolled)
+    assert bulk.weight.sum() == pytest.approx(2.0 * np.pi * (3.0**2 - 2.0**2) / 6.0 / 2.0, rel=1e-12)
+    moved = 0.01 * rolled.place(basis.doflocs)
+    found = bulk.gradient(moved.T.ravel())
+    assert found[[0, 3]] == pytest.approx(np.full((2, *bulk.weight.shape), 0.01), abs=1e-5)
+    assert found[[1, 2]] == pytest.approx(np.zeros((2, *bulk.weight.shape)), abs=1e-5)
 
 
 @pytest.mark.parametrize("sides", ["free", "confined"])
@@ -689,6 +702,31 @@ def test_who_is_in_haste_gives_up_where_no_whole_steps_lead_to_an_equilibrium(
             balanced(encounter, start, 0.1, 500.0, hasty=True)
         return
     assert balanced(encounter, start, 0.1, 500.0) is at_last
+
+
+@pytest.mark.parametrize(("shrinks", "steps", "found"), [(0.5, 8, False), (2.0, 3, False), (1e-3, 4, True)])
+def test_whole_steps_are_given_up_after_eight_or_once_two_in_a_row_promise_more(
+    shrinks: float, steps: int, found: bool
+) -> None:
+    """Else the one that promises next to nothing is the last, and all are counted. By what each leaves of a promise."""
+    tried, free = list[Array](), SimpleNamespace(body=SimpleNamespace(free=np.array([0])))
+
+    def balance() -> Any:
+        touch = SimpleNamespace(touching=np.ones((1, 1), bool), stiffening=np.ones(1))
+        residual = np.array([-(shrinks ** (0.5 * len(tried)))])
+        loaded = SimpleNamespace(foreseen=lambda change: None)
+        solved: Any = SimpleNamespace(residual=residual, energy=1.0, displacement=np.zeros(1), touch=touch)
+        vars(solved).update(encounter=free, loaded=loaded, factors=lambda pulls: lambda given: given)
+        return solved
+
+    def at(place: Array) -> Any:
+        tried.append(place)
+        return balance()
+
+    answer = newton._hastened(balance(), at, 2e-9, None)
+    assert len(tried) == steps
+    assert (answer is not None) == found
+    assert answer is None or answer.iterations == steps
 
 
 def descended(energy: Callable[[float], float], slope: float, way: float = 0.3) -> float:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.interpolate import BarycentricInterpolator
 
 from fe_contact.errors import ContactLost, ContactNotSettled, TooManySteps
 from fe_contact.march.impact import STEPS_ALLOWED, _Marcher, growth, marched, step_length
@@ -224,8 +225,14 @@ def test_a_striker_that_a_fluid_has_stopped_stands_until_the_end_and_one_that_mo
     stopped: Any = State(1.0, 0.1, 1e-5, 3.0, None)
     rows = marcher._rest(stopped, 1e-4 * VELOCITY)
     assert rows[-1].time == pytest.approx(9.0)
-    assert np.diff([1.0, *(row.time**0.5 for row in rows)]) == pytest.approx(2.0 / len(rows))
+    times = np.array([1.0, *(row.time for row in rows)])
+    assert np.ptp(times[1:] / times[:-1]) < 1e-9
     assert all(row[1:] == stopped[1:] for row in rows)
+    six = times[:6]
+    between = np.linspace(six[0], six[-1], 101)
+    off = np.abs(BarycentricInterpolator(six**0.5, 1.0 / six)(between**0.5) * between - 1.0)
+    assert off.max() < 1e-6, "six of them tell 1/t"
+    assert 9.0 ** (0.5 / len(rows)) <= 1.03 < 9.0 ** (0.5 / (len(rows) - 1)), "and there are no more of them"
     with pytest.raises(ContactNotSettled):
         marcher._rest(stopped._replace(velocity=1.1e-4 * VELOCITY), 1e-4 * VELOCITY)
 

@@ -28,6 +28,7 @@ from fe_contact.plastic.indent import _onwards
 from fe_contact.plastic.path import FIRST_RELEASED, RELEASED, PlasticFlowSlow, PlasticZoneWide, Presser, Station
 from fe_contact.progress import silent
 from fe_contact.settings import Numerics
+from fe_contact.solids.contact import OnUndeformed
 from fe_contact.solids.newton import MOST_ITERATIONS
 from fe_contact.steppers.steps import Work
 from fe_contact.studies.compare.study import compare
@@ -40,7 +41,7 @@ from lumped.result.model_ledger import FLOW
 from lumped.scene.indenter import Indenter
 from lumped.scene.tables import SceneReader
 from lumped.schema import Table
-from lumped.shapes import Sphere
+from lumped.shapes import Parabola, Sphere
 from lumped.shapes.cone import Cone
 
 YOUNG, STRENGTH, RADIUS, MASS = 2e11, 4e8, 0.005, 4e-3
@@ -207,13 +208,17 @@ def test_a_weight_goes_deeper_and_leaves_slower_or_is_held() -> None:
         Rebound(linear, mass, 1e-6, 1.5, 1.0, 100.0).march(Work())
 
 
-def test_no_impact_goes_much_deeper_than_where_its_energy_is_spent_at_the_least_pressure() -> None:
-    """Three quarters of the strength on what overlaps, pi (2 R d - d^2): from there on to 1.15 times as deep."""
-    scene = Scene.from_dict(tables(mass=MASS, velocity=3.0))
+@pytest.mark.parametrize("gravity", [0.0, 1e5])
+def test_no_impact_goes_much_deeper_than_where_its_energy_is_spent_at_the_least_pressure(gravity: float) -> None:
+    """Three quarters of the strength on what overlaps, pi (2 R d - d^2), less the weight: from there on to 1.15 times
+    as deep.
+    """
+    scene = Scene.from_dict(tables(mass=MASS, velocity=3.0) | {"model": {"plasticity": True, "gravity": gravity}})
     energy = 0.5 * MASS * scene.velocity**2
     depth = np.array([1.0, 1.0 / 1.15]) * _at_most(scene, energy)
-    most, before = 0.75 * STRENGTH * math.pi * (RADIUS * depth**2 - depth**3 / 3.0)
-    assert before < 1.05 * energy <= 1.05 * most
+    spent = 0.75 * STRENGTH * math.pi * (RADIUS * depth**2 - depth**3 / 3.0) - MASS * gravity * depth
+    most, before = spent
+    assert before < 1.001 * energy <= 1.002 * most
 
 
 @pytest.fixture(scope="module")
@@ -490,6 +495,14 @@ def test_a_core_is_as_wide_as_the_flow_needs_and_no_wider_than_is_meshed(reach: 
     with pytest.raises(PlasticZoneWide, match="13 contact radii") if reach > ground.WIDEST else nullcontext():
         assert within_core(COURSE, told) == reach
     assert tried == [8.0, 16.0][: 1 + (reach > ground.CORE)]
+
+
+def test_a_striker_that_is_nearer_by_some_more_overlaps_by_it_and_stands_where_it_stood() -> None:
+    place, more = np.array([[[0.0, 0.3, 0.7]], [[0.0, 0.0, 0.0]]]), np.array([[0.01, -0.02, 0.03]])
+    nearer = ground.Nearer(OnUndeformed(Parabola(1.0), 1.0), more)
+    found = nearer.overlap(place, np.zeros_like(place), 0.1)
+    assert found.depth == pytest.approx(0.1 - 0.5 * place[0] ** 2 + more)
+    assert nearer.along(place) == pytest.approx(place[0])
 
 
 @pytest.mark.parametrize(("core", "enough"), [(ground.CORE, False), (ground.WIDEST, True)])

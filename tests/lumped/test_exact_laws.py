@@ -27,8 +27,10 @@ from lumped.shapes.cone import Cone
 from lumped.shapes.power import PowerProfile
 from lumped.shapes.sphere import Sphere
 from lumped.solvers.hereditary.approach import approach
+from lumped.solvers.hereditary.closing import close
 from lumped.solvers.hereditary.march import Settings
-from lumped.solvers.hereditary.pieces import alone
+from lumped.solvers.hereditary.pieces import DEPTH, FORCE, alone
+from lumped.solvers.mdr import march
 from lumped.solvers.mdr.nest import (
     REST,
     Adaptive,
@@ -38,8 +40,10 @@ from lumped.solvers.mdr.nest import (
     coarse,
     coarse_beyond,
     limit,
+    pace_of,
     predicted_turn,
     problem_of,
+    shrinks_until,
 )
 from lumped.solvers.mdr.row import (
     SERIES_BELOW,
@@ -492,6 +496,71 @@ def test_steps_near_the_turn_are_judged_by_the_speed_at_touch(unit: float) -> No
     pace = Adaptive(first=1.0, elements=50, reach=1.0, velocity=unit)
     at_rest = [Instant(float(time), 0.0, 0.0, unit * time**2, 0.0, 0.0) for time in (0.0, 1.0, 2.0)]
     assert pace.error(*at_rest) * pace.tolerance == pytest.approx(1.0 / 6.0 / REST)
+
+
+@pytest.mark.parametrize("name", ["polymer-sphere", "polymer-cone", "rod-in-ring"])
+def test_the_end_of_a_contact_is_told_with_how_steeply_its_force_falls_there(name: str) -> None:
+    """With the load, as a power of the depth: by the path itself, a little before."""
+    problem, settings = _hereditary.problem_of(Scene.load(name)), Settings(1e-10, 12)
+    inward = alone(approach(problem, 100.0, settings))
+    closing = alone(close(problem, inward, 100.0, settings))
+    assert closing.last is not None
+    begin = float(closing.last.breaks[0])
+    first, before, last = (closing.last.state(share * begin) for share in (1.0, 0.03, 0.0))
+    load, slope = (float(value[0]) for value in problem.loads(first[:1]))
+    power = slope * float(first[DEPTH]) / load
+    steep = (before[FORCE] - last[FORCE]) / (before[DEPTH] ** power - last[DEPTH] ** power)
+    assert closing.steep == pytest.approx(steep, rel=2e-3)
+    assert last[FORCE] == pytest.approx(0.0, abs=1e-12 * inward.largest)
+
+
+@pytest.mark.parametrize("gravity", [20.0, 40.0])
+def test_a_last_step_that_is_cut_is_doubted_where_the_force_at_its_edge_rises(
+    gravity: float, impact: Callable[..., Scene]
+) -> None:
+    """There the edge turns before the striker does: it is told by many lengths of that step."""
+    problem = problem_of(impact(0.2, (0.8,), (0.1,), gravity=gravity, velocity=0.01))
+    inward = march.approach(problem, 1.0, pace_of(problem, 1.0, 16), 1000)
+
+    def ended(time: float, doubted: bool) -> End:
+        return march.rebound(replace(inward, row=inward.row.copy()), time, doubted).end
+
+    row = inward.row.copy()
+    last = march.rebound(replace(inward, row=row), 1.0).rebound[-1]
+    shrinking, lengths = march.Shrinking(row, last), np.linspace(1e-5, 0.02, 2000)
+    tried = [shrinking.attempt(float(length)) for length in lengths]
+    turn = float(lengths[np.argmax([one.velocity > 0.0 for one in tried])])
+    rise = float(lengths[np.argmin([one.pull for one in tried if one.h < turn])])
+    assert rise < 0.8 * turn
+    for time, doubtful, turned in (
+        (0.5 * rise, False, False),
+        (0.95 * rise, False, False),
+        (1.25 * rise, True, False),
+        (0.95 * turn, True, False),
+        (1.05 * turn, True, True),
+    ):
+        assert shrinking.turns_before(last.time + time) is doubtful
+        assert (ended(last.time + time, True) is End.SECOND_APPROACH) is doubtful
+        assert (ended(last.time + time, False) is End.SECOND_APPROACH) is turned
+
+
+@pytest.mark.parametrize(("gravity", "velocity"), [(3.0, 0.01), (9.81, 0.03), (40.0, 0.01)])
+def test_an_edge_is_followed_until_no_march_however_fine_sees_it_turn(
+    gravity: float, velocity: float, impact: Callable[..., Scene]
+) -> None:
+    """And for two fifths of its way back at least; not at all where it turns at once, or never."""
+    scene = impact(0.2, (0.8,), (0.1,), gravity=gravity, velocity=velocity)
+    problem = problem_of(scene)
+    until = shrinks_until(problem, scene.end_time, 16)
+    assert until is not None
+    assert {coarse(problem, until, elements).end for elements in (16, 24, 32, 48, 64, 96)} == {End.TIME}
+    turn = coarse(problem, until, 64).approach[-1].time
+    end = simulate(laws.ting.of(scene), scene, 1e-5).history.time[-1]
+    assert turn + 0.4 * (end - turn) < until < end
+    assert shrinks_until(problem, turn, 16) is None
+    assert shrinks_until(replace(problem, gravity=0.0), scene.end_time, 16) is None
+    assert shrinks_until(replace(problem, gravity=4000.0), scene.end_time, 16) == 0.0
+    assert shrinks_until(replace(problem, gravity=0.05, velocity=1e-4), 1.0, 16) is not None
 
 
 @pytest.mark.parametrize("power", [1.0, 1.5, 2.0, 3.0, 5.0])

@@ -165,6 +165,28 @@ def test_pieces_are_as_long_as_a_share_of_the_largest_force_so_far_allows(sign: 
     assert found.largest == pytest.approx(50.001, rel=1e-3)
 
 
+@pytest.mark.parametrize("bent", [0, 1])
+def test_pieces_are_as_short_as_the_time_asks_where_that_is_sought_too(bent: int) -> None:
+    """Of two fields, the force and the time, of which one is straight: each by its own largest of the piece."""
+
+    def fields(places: Array) -> Array:
+        curved, straight = np.exp(-((places - 3.0) ** 2)) + 0.1, 0.01 * places + 0.1
+        return np.array([curved, straight] if bent == 0 else [straight, curved])
+
+    def attempt(place: float, length: float, state: Array) -> Followed[HereditaryPiece | None]:
+        yield from ()
+        return HereditaryPiece(fields(place + length * np.append(0.0, radau(8).points)), 1)
+
+    stretch = Stretch(attempt, 0, lambda values: False, 1)
+    found = alone(stretch.march((0.0, 9.0), fields(np.zeros(1))[:, 0], 0.1, Settings(1e-6, 8))).path
+    nodes = np.append(0.0, radau(8).points)
+    curves = [fields(begin + (end - begin) * nodes)[bent] for begin, end in pairwise(found.breaks)]
+    heights = [row[-1] for row in curves] if bent else np.maximum.accumulate([row.max() for row in curves])
+    errors = np.array([tail(row) for row in curves]) / heights
+    assert errors.max() <= 1e-6
+    assert np.median(errors) > 1e-8, "and hardly shorter"
+
+
 @pytest.mark.parametrize("longest", [0.3, 0.011])
 def test_a_piece_without_a_solution_is_tried_at_a_quarter_of_its_length(longest: float) -> None:
     """And where none has one, however short, the march is stuck there, or has not begun."""

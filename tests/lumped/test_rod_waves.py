@@ -198,6 +198,8 @@ def test_the_law_reports_what_its_solution_says() -> None:
         assert history.force[-1] == 0.0
         (inertia,) = [entry for entry in result.model_ledger if entry.effect == "target inertia"]
         assert inertia.treated == "included"
+        flat_end = result.scene.profile.fixed_radius is not None
+        assert result.numerics == ({"series": "exact"} if flat_end else {"rtol": 1e-9})
 
 
 def test_the_pole_takes_what_the_audit_says() -> None:
