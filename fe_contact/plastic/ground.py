@@ -119,7 +119,7 @@ class Ground:
         skfem's own search asks every element for every place.
         """
         basis, rows = self.basis, np.arange(places.shape[1])
-        beside = self._middles.query(places.T, BESIDE)[1]
+        beside = np.asarray(self._middles.query(places.T, BESIDE)[1])
         all_beside = np.repeat(places, BESIDE, axis=1)[:, :, None]
         inside = basis.mapping.invF(all_beside, tind=beside.ravel()).reshape(2, -1, BESIDE)
         holds = np.minimum(inside.min(axis=0), 1.0 - inside.sum(axis=0)).argmax(axis=1)
