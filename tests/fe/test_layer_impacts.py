@@ -210,6 +210,7 @@ def test_the_force_at_the_touch_of_what_is_round_is_that_of_a_first_step_without
     numerics = plan(scene, {"steps": 48}).numerics
     stepper = struck(scene.geometry, numerics).stepper(Strike.of(scene), numerics, ())
     assert isinstance(stepper, FixedStepper)
+    assert stepper.surface.operator.nodes[stepper.standing()] == 0.0, "on the axis"
     usual = scene.mass * scene.velocity / numerics.contact_time
     lengths = numerics.contact_time * np.geomspace(1e-4, 1e-8, 5)
     forces = np.array([stepper.step(stepper.touch(), (), length).force for length in lengths]) / usual

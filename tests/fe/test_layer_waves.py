@@ -22,6 +22,7 @@ from fe_contact.waves.impact import motion, record
 from fe_contact.waves.targets import half_space, layer
 from fe_contact.waves.targets.base import WAVES
 from lumped import BadInput, Scene, laws
+from lumped.laws import mdr
 from lumped.load_curves.hertz import hertz_impact
 from lumped.targets.layer import Layer, moving_share
 
@@ -279,3 +280,15 @@ def test_what_has_no_waves_here_is_refused_with_its_key(changes: dict[str, Any],
 def test_its_fields_are_refused_by_name(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "polymer-layer-waves", "--fields"]) == 2
     assert "target.shape" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("base", "column"), [("bonded", 0.7**2 / 0.4), ("sliding", 1.0)])
+def test_a_thin_layer_is_stiffer_than_a_half_space_by_its_column(base: str, column: float) -> None:
+    """15 times as wide as thick: pi a^2/h times its confined modulus, or E* where it slides, to a half-space's 2 E* a.
+
+    The confined modulus is (1 - nu)^2/(1 - 2 nu) of E*.
+    """
+    keys = {"target.base": base, "target.material.nu": 0.3, "target.thickness": 1e-6}
+    scene, radius = Scene.load("polymer-layer-waves", keys), 1.5e-5
+    size = mdr.ImpactScales(radius, radius**2 / (2.0 * scene.shape.radius), 1.0, 1.0, 2.0, None, None)
+    assert layer._stiffness(scene, size) == pytest.approx(0.5 * math.pi * column * radius / 1e-6, rel=0.05)
