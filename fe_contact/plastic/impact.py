@@ -123,6 +123,12 @@ class Rebound:
     start: float
     weight: float = 0.0
 
+    @classmethod
+    def of(cls, answered: Answered, scene: Scene, course: Course) -> Rebound:
+        """The striker of a scene, on what answers to its course."""
+        mass = scene.reduced_mass
+        return cls(answered, mass, _energy(scene), released_power(course), course.power, mass * scene.gravity)
+
     def force(self, depth: Array) -> Array:
         """While it comes in, N; below the first depth known a power of the depth."""
         known = self.answered
@@ -282,20 +288,22 @@ class Pilot(NamedTuple):
 @cached
 def pilot(scene: Scene) -> Pilot:
     """By a coarse mesh and few steps. Raises NotReached."""
-    energy = 0.5 * scene.reduced_mass * scene.velocity**2
-    deepest = _at_most(scene, energy)
+    deepest = _at_most(scene, _energy(scene))
     course = Course.of(scene, deepest, deepest).starting_at(PILOT_FIRST * deepest)
-    return within_core(course, partial(_piloted, scene, energy))
+    return within_core(course, partial(_piloted, scene))
 
 
-def _piloted(scene: Scene, energy: float, course: Course) -> Pilot:
+def _piloted(scene: Scene, course: Course) -> Pilot:
     loading = PlasticLoading.of(course, settings(PILOT, course), most=MOST_PILOT, counted=step_done)
     loading.to(BEYOND * course.deepest)
-    power = released_power(course)
-    weight = scene.reduced_mass * scene.gravity
-    found = Rebound(Answered.of(loading), scene.reduced_mass, energy, power, course.power, weight)
+    found = Rebound.of(Answered.of(loading), scene, course)
     deepest = found.deepest
     return Pilot(replace(Course.of(scene, deepest, deepest), core=course.core), found.march(Work()))
+
+
+def _energy(scene: Scene) -> float:
+    """Of the striker at touch, J."""
+    return 0.5 * scene.reduced_mass * scene.velocity**2
 
 
 def _at_most(scene: Scene, energy: float) -> float:
@@ -460,10 +468,7 @@ class Runner:
 
     def motion(self, answer: Answered) -> Rebound:
         """The striker's, on what answers so."""
-        mass = self.scene.reduced_mass
-        energy = 0.5 * mass * self.scene.velocity**2
-        weight = mass * self.scene.gravity
-        return Rebound(answer, mass, energy, released_power(self.course), self.course.power, weight)
+        return Rebound.of(answer, self.scene, self.course)
 
     def variation(self, pair: Contrast[Answered]) -> Variation:
         """Of the striker's motion."""
