@@ -28,7 +28,7 @@ settings.register_profile("full", derandomize=True, deadline=None, max_examples=
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--tenth", action="store_true", help="run every test, the random campaigns by a seeded tenth")
+    parser.addoption("--tenth", action="store_true", help="run all but the dearest, the random campaigns by a tenth")
     parser.addoption("--full", action="store_true", help="run every test, the random campaigns whole")
     parser.addoption("--after-plain", action="store_true", help="leave out what a plain run has just run to the letter")
     parser.addoption("--opensees", action="store_true", help="compare with openseespy too, which has to be installed")
@@ -42,6 +42,7 @@ def size_of(config: pytest.Config) -> str:
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "family: slow; a plain run takes its first case only")
     config.addinivalue_line("markers", "tenth: slow; a plain run leaves it out")
+    config.addinivalue_line("markers", "full: slower still, and others say nearly the same; --full alone runs it")
     settings.load_profile(size_of(config))
 
 
@@ -54,7 +55,7 @@ def in_plain_run(items: Iterable[pytest.Item]) -> set[pytest.Item]:
     chosen, families = set[pytest.Item](), set[str]()
     for item in items:
         family = item.nodeid.partition("[")[0] if item.get_closest_marker("family") else ""
-        if not item.get_closest_marker("tenth") and family not in families:
+        if not (item.get_closest_marker("tenth") or item.get_closest_marker("full")) and family not in families:
             chosen.add(item)
             families |= {family} - {""}
     return chosen
@@ -68,13 +69,12 @@ def grows_with_size(item: pytest.Item) -> bool:
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """The part of this size, less what a plain run has run where the same is said of it."""
-    plain = in_plain_run(items)
-    if size_of(config) == "plain":
-        chosen = plain
-    elif config.getoption("--after-plain"):
-        chosen = {item for item in items if item not in plain or grows_with_size(item)}
-    else:
+    if size_of(config) == "full":
         return
+    plain = in_plain_run(items)
+    chosen = plain if size_of(config) == "plain" else {item for item in items if not item.get_closest_marker("full")}
+    if size_of(config) == "tenth" and config.getoption("--after-plain"):
+        chosen -= {item for item in plain if not grows_with_size(item)}
     config.hook.pytest_deselected(items=[item for item in items if item not in chosen])
     items[:] = [item for item in items if item in chosen]
 
