@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault, NotReached
-from lumped.load_curves.base import GAUSS_POINTS, KnownTogether, check_below, elastic_faults
+from lumped.load_curves.base import GAUSS_POINTS, LoadCurve, check_below, elastic_faults
 from lumped.load_curves.plane_contact import Collocation, Grown, collocation, folded
 from lumped.load_curves.tabulated import ACCURACY, certified, evaluate
 from lumped.numbers import Array, Real, gauss
@@ -37,17 +37,23 @@ TAIL, LEAST_ORDER = 42.0, 12
 
 
 @dataclass(frozen=True)
-class RingContact:
+class RodInRing(LoadCurve):
     """Exact arcs: with D = clearance + depth the overlap is D cos(theta) + sqrt(R^2 - D^2 sin^2(theta)) - inner radius.
 
-    Its radial pressure is found from the Fourier series of the annulus, whose outer surface is fixed. Lengths in m,
-    `nu` in (-1, 0.5], the clearance inner_radius - radius at least 1e-4 thickness. Raises BadInput.
+    Its radial pressure is found from the Fourier series of the annulus, whose outer surface is fixed. F is the
+    component along the motion, the contact radius the half-length of the inner arc that is touched. Lengths in m, `nu`
+    in (-1, 0.5], the clearance inner_radius - radius at least 1e-4 thickness.
+
+    While the cylinder's arc is the exact one, F is not the slope of a stored energy: the motion turns the overlap a
+    little further than cos(theta). Depths stay below thickness and radius; below 1e-17 of them all is 0.
+    Raises BadInput, or NotReached where two resolutions differ by more than 1e-8 or the contact goes all the way round.
     """
 
     radius: float
     inner_radius: float
     thickness: float
     nu: float
+    accuracy: ClassVar[float] = ACCURACY
 
     def __post_init__(self) -> None:
         faults = elastic_faults("ring", self.nu, radius=self.radius, thickness=self.thickness)
@@ -71,97 +77,6 @@ class RingContact:
     def check_depth(self, depth: ArrayLike) -> None:
         """Raises BadInput where a depth reaches the limit."""
         check_below(depth, self.depth_limit, "thickness and radius,")
-
-    def pressed(self, depth: float, refinement: float) -> Grown:
-        """The contact at one depth, m; its force is the component along the motion. Raises NotReached."""
-        angle = self._half_angle(depth, refinement)
-        rule, matrix = self._equation(angle, refinement)
-        theta, distance = angle * rule.nodes, self.clearance + depth
-        sources = np.stack([depth - self._fall(theta, distance), 1.0 - self._fall_slope(theta, distance)], axis=1)
-        q, growth = np.linalg.solve(matrix, sources).T
-        half_length = self.inner_radius * angle
-        force, stiffness = half_length * rule.total(np.stack([q, growth]) * np.cos(theta))
-        if not min(force, stiffness) > 0.0:
-            raise NotReached(f"the ring at a depth of {depth:g} m: {theta.size} points do not resolve the pressure")
-        return Grown(rule, half_length, q, depth, float(force), 1.0 / float(stiffness))
-
-    def depth_at(self, angle: float) -> float:
-        """The least depth with this half-angle, by Newton's method, monotone from 0; infinite where none has it."""
-        theta, share = self._edge(angle, 1.0)
-        depth = 0.0
-        for _ in range(NEWTON_STEPS):
-            distance = self.clearance + depth
-            slope = 1.0 - float(share @ self._fall_slope(theta, distance))
-            step = (float(share @ self._fall(theta, distance)) - depth) / slope
-            if slope <= 0.0 or (distance + step) * np.sin(theta).max() >= self.radius:
-                return inf
-            if step <= 1e-13 * depth:
-                return depth
-            depth += step
-        raise NotReached(f"the depth in the ring at a half-angle of {angle:g} was not found in {NEWTON_STEPS} steps")
-
-    def _half_angle(self, depth: float, refinement: float) -> float:
-        """The half-angle at whose ends the pressure vanishes: searched with few points, found by a secant with all."""
-        angle = self._searched(depth, SEARCH * refinement)
-        here, before = (self._excess(at, depth, refinement) for at in (angle, angle * (1.0 - SECANT)))
-        return angle * (1.0 - SECANT * here / (here - before))
-
-    def _searched(self, depth: float, refinement: float) -> float:
-        """The half-angle where the excess ends; raises NotReached where it does not."""
-        from scipy.optimize import brentq
-
-        distance = self.clearance + depth
-        widest = min(WIDEST, asin(min(1.0, self.radius / distance)) if distance > self.radius else WIDEST)
-        guess = (depth * self.radius / (self.inner_radius * self.clearance)) ** 0.5
-        low = high = min(guess, FIRST_ANGLE, 0.9 * widest)
-        while self._excess(low, depth, refinement) < 0.0:
-            low *= 0.5
-        while self._excess(high, depth, refinement) > 0.0:
-            if high > 0.999 * widest:
-                raise NotReached(f"the contact in the ring at a depth of {depth:g} m has no end")
-            low, high = high, min(1.4 * high, 0.9995 * widest)
-        return float(brentq(self._excess, low, high, args=(depth, refinement), xtol=1e-300, rtol=1e-9))
-
-    def _excess(self, angle: float, depth: float, refinement: float) -> float:
-        """Above 0 while a contact of this half-angle still presses at its ends."""
-        theta, share = self._edge(angle, refinement)
-        return 1.0 - float(share @ self._fall(theta, self.clearance + depth)) / depth
-
-    def _edge(self, angle: float, refinement: float) -> tuple[Array, Array]:
-        """Angles of the nodes, and the share of each in what keeps the edge free of pressure; shapes (m,)."""
-        rule, matrix = self._equation(angle, refinement)
-        edge = np.asarray(np.linalg.solve(matrix.T, rule.edge), dtype=float)
-        return angle * rule.nodes, edge / edge.sum()
-
-    def _equation(self, angle: float, refinement: float) -> tuple[Collocation, Array]:
-        width = angle * self.inner_radius / self.thickness
-        rule = collocation(int(refinement * (POINTS + POINTS_PER_RADIAN * angle + POINTS_PER_THICKNESS * width)))
-        ratio = self.inner_radius / (self.inner_radius + self.thickness)
-        return rule, self.inner_radius * ring_compliance(self.nu, ratio, rule, angle)
-
-    def _fall(self, theta: Array, distance: float) -> Array:
-        """Overlap at theta = 0 less that at theta, m: 2 D sin^2(theta/2) + R - sqrt(R^2 - D^2 sin^2(theta))."""
-        square = (distance * np.sin(theta)) ** 2
-        arc = square / (self.radius + np.sqrt(self.radius**2 - square))
-        return np.asarray(2.0 * distance * np.sin(0.5 * theta) ** 2 + arc)
-
-    def _fall_slope(self, theta: Array, distance: float) -> Array:
-        """d fall / d D."""
-        sine = np.sin(theta)
-        arc = distance * sine**2 / np.sqrt(self.radius**2 - (distance * sine) ** 2)
-        return np.asarray(2.0 * np.sin(0.5 * theta) ** 2 + arc)
-
-
-@dataclass(frozen=True)
-class RodInRing(RingContact, KnownTogether):
-    """F is the component along the motion, the contact radius the half-length of the inner arc that is touched.
-
-    While the cylinder's arc is the exact one, F is not the slope of a stored energy: the motion turns the overlap a
-    little further than cos(theta). Depths stay below thickness and radius; below 1e-17 of them all is 0.
-    Raises BadInput, or NotReached where two resolutions differ by more than 1e-8 or the contact goes all the way round.
-    """
-
-    accuracy: ClassVar[float] = ACCURACY
 
     def contact_radius(self, depth: ArrayLike) -> Real:
         """Half-length of the inner arc touched, m."""
@@ -213,6 +128,34 @@ class RodInRing(RingContact, KnownTogether):
         nodes, weights = gauss(GAUSS_POINTS)
         return np.asarray(d * (self.force(d[..., None] * nodes**2) @ (2.0 * nodes * weights)))
 
+    def pressed(self, depth: float, refinement: float) -> Grown:
+        """The contact at one depth, m; its force is the component along the motion. Raises NotReached."""
+        angle = self._half_angle(depth, refinement)
+        rule, matrix = self._equation(angle, refinement)
+        theta, distance = angle * rule.nodes, self.clearance + depth
+        sources = np.stack([depth - self._fall(theta, distance), 1.0 - self._fall_slope(theta, distance)], axis=1)
+        q, growth = np.linalg.solve(matrix, sources).T
+        half_length = self.inner_radius * angle
+        force, stiffness = half_length * rule.total(np.stack([q, growth]) * np.cos(theta))
+        if not min(force, stiffness) > 0.0:
+            raise NotReached(f"the ring at a depth of {depth:g} m: {theta.size} points do not resolve the pressure")
+        return Grown(rule, half_length, q, depth, float(force), 1.0 / float(stiffness))
+
+    def depth_at(self, angle: float) -> float:
+        """The least depth with this half-angle, by Newton's method, monotone from 0; infinite where none has it."""
+        theta, share = self._edge(angle, 1.0)
+        depth = 0.0
+        for _ in range(NEWTON_STEPS):
+            distance = self.clearance + depth
+            slope = 1.0 - float(share @ self._fall_slope(theta, distance))
+            step = (float(share @ self._fall(theta, distance)) - depth) / slope
+            if slope <= 0.0 or (distance + step) * np.sin(theta).max() >= self.radius:
+                return inf
+            if step <= 1e-13 * depth:
+                return depth
+            depth += step
+        raise NotReached(f"the depth in the ring at a half-angle of {angle:g} was not found in {NEWTON_STEPS} steps")
+
     def _at(self, depth: ArrayLike) -> Array:
         """Half-length, F/E*, its slope and dln(half-length)/dln(depth), shape (4, ...); all 0 without depth."""
         self.check_depth(depth)
@@ -225,6 +168,57 @@ class RodInRing(RingContact, KnownTogether):
                 values, slopes = evaluate(_panel(self, index)[None], EDGES[[index, index - 1]], place[here])
                 answer[:, here] = np.concatenate([np.exp(values), slopes[:1]])
         return answer.reshape(4, *d.shape)
+
+    def _half_angle(self, depth: float, refinement: float) -> float:
+        """The half-angle at whose ends the pressure vanishes: searched with few points, found by a secant with all."""
+        angle = self._searched(depth, SEARCH * refinement)
+        here, before = (self._excess(at, depth, refinement) for at in (angle, angle * (1.0 - SECANT)))
+        return angle * (1.0 - SECANT * here / (here - before))
+
+    def _searched(self, depth: float, refinement: float) -> float:
+        """The half-angle where the excess ends; raises NotReached where it does not."""
+        from scipy.optimize import brentq
+
+        distance = self.clearance + depth
+        widest = min(WIDEST, asin(min(1.0, self.radius / distance)) if distance > self.radius else WIDEST)
+        guess = (depth * self.radius / (self.inner_radius * self.clearance)) ** 0.5
+        low = high = min(guess, FIRST_ANGLE, 0.9 * widest)
+        while self._excess(low, depth, refinement) < 0.0:
+            low *= 0.5
+        while self._excess(high, depth, refinement) > 0.0:
+            if high > 0.999 * widest:
+                raise NotReached(f"the contact in the ring at a depth of {depth:g} m has no end")
+            low, high = high, min(1.4 * high, 0.9995 * widest)
+        return float(brentq(self._excess, low, high, args=(depth, refinement), xtol=1e-300, rtol=1e-9))
+
+    def _excess(self, angle: float, depth: float, refinement: float) -> float:
+        """Above 0 while a contact of this half-angle still presses at its ends."""
+        theta, share = self._edge(angle, refinement)
+        return 1.0 - float(share @ self._fall(theta, self.clearance + depth)) / depth
+
+    def _edge(self, angle: float, refinement: float) -> tuple[Array, Array]:
+        """Angles of the nodes, and the share of each in what keeps the edge free of pressure; shapes (m,)."""
+        rule, matrix = self._equation(angle, refinement)
+        edge = np.asarray(np.linalg.solve(matrix.T, rule.edge), dtype=float)
+        return angle * rule.nodes, edge / edge.sum()
+
+    def _equation(self, angle: float, refinement: float) -> tuple[Collocation, Array]:
+        width = angle * self.inner_radius / self.thickness
+        rule = collocation(int(refinement * (POINTS + POINTS_PER_RADIAN * angle + POINTS_PER_THICKNESS * width)))
+        ratio = self.inner_radius / (self.inner_radius + self.thickness)
+        return rule, self.inner_radius * ring_compliance(self.nu, ratio, rule, angle)
+
+    def _fall(self, theta: Array, distance: float) -> Array:
+        """Overlap at theta = 0 less that at theta, m: 2 D sin^2(theta/2) + R - sqrt(R^2 - D^2 sin^2(theta))."""
+        square = (distance * np.sin(theta)) ** 2
+        arc = square / (self.radius + np.sqrt(self.radius**2 - square))
+        return np.asarray(2.0 * distance * np.sin(0.5 * theta) ** 2 + arc)
+
+    def _fall_slope(self, theta: Array, distance: float) -> Array:
+        """d fall / d D."""
+        sine = np.sin(theta)
+        arc = distance * sine**2 / np.sqrt(self.radius**2 - (distance * sine) ** 2)
+        return np.asarray(2.0 * np.sin(0.5 * theta) ** 2 + arc)
 
 
 @lru_cache(maxsize=256)
