@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault, NotReached
 from lumped.load_curves.base import LoadCurve
-from lumped.load_curves.half_plane import check_datum
 from lumped.load_curves.layer import PointLayer
+from lumped.load_curves.plane_contact import HalfPlane, ParabolaProfile
 from lumped.numbers import Array, Real
 
 
@@ -33,7 +33,7 @@ class Johnson(LoadCurve):
     nu: float
 
     def __post_init__(self) -> None:
-        check_datum(self.datum_depth, self.nu)
+        HalfPlane(ParabolaProfile(self.radius), self.datum_depth, self.nu)  # refuses what this refuses
 
     @property
     def extent(self) -> float:
