@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lumped.load_curves import cone
+from lumped.load_curves.sneddon import ConeCurve
 from lumped.numbers import Array
 from lumped.schema.keys import Key, Number, Part
 from lumped.shapes.base import Shape
@@ -38,9 +38,9 @@ class Cone(Shape):
         return 2.0
 
     @property
-    def load_curve(self) -> cone.ConeCurve:
+    def load_curve(self) -> ConeCurve:
         """Sneddon's closed form, F = (2/pi) E* depth^2/tan(angle)."""
-        return cone.ConeCurve(self.angle)
+        return ConeCurve(self.angle)
 
     @property
     def _tangent(self) -> float:
