@@ -217,7 +217,7 @@ class SphereConeCurve(KnownByRadius):
         """a [L + tan(theta) arccos(b/a)], L = ln((R + a)/(R cos(theta) + sqrt(a^2 - b^2))); up to b the sphere's, m."""
         a = np.asarray(contact_radius, dtype=float)
         beyond = np.maximum(a, self.tip)
-        cone = beyond * (self._sphere(beyond) + self._steepness * self._turn(beyond))
+        cone = beyond * (self._sphere(beyond) + self.steepness * self._turn(beyond))
         return np.where(a > self.tip, cone, self._tip.depth(np.minimum(a, self.tip)))
 
     def depth_slope(self, contact_radius: ArrayLike) -> Real:
@@ -226,7 +226,7 @@ class SphereConeCurve(KnownByRadius):
         beyond, c = np.maximum(a, self.tip), self._height
         w = self._reach(beyond)
         rest = beyond / (self.radius + beyond) + (self.tip**2 - c * w) / (c * (c + w))
-        cone = self._sphere(beyond) + self._steepness * self._turn(beyond) + rest
+        cone = self._sphere(beyond) + self.steepness * self._turn(beyond) + rest
         return np.where(a > self.tip, cone, self._tip.depth_slope(np.minimum(a, self.tip)))
 
     def force_at(self, contact_radius: ArrayLike) -> Real:
@@ -235,7 +235,7 @@ class SphereConeCurve(KnownByRadius):
         beyond = np.maximum(a, self.tip)
         w = self._reach(beyond)
         sphere = (self.radius**2 + beyond**2) * self._sphere(beyond) - self.radius * beyond + self._height * w
-        cone = self._steepness * (beyond**2 * self._turn(beyond) + self.tip * w)
+        cone = self.steepness * (beyond**2 * self._turn(beyond) + self.tip * w)
         return np.where(a > self.tip, sphere + cone, self._tip.force_at(np.minimum(a, self.tip)))
 
     def pressure(self, radius: ArrayLike, contact_radius: float) -> Array:
@@ -260,7 +260,7 @@ class SphereConeCurve(KnownByRadius):
         return SneddonSphere(self.radius)
 
     @property
-    def _steepness(self) -> float:
+    def steepness(self) -> float:
         """tan(theta)."""
         return tan(radians(self.angle))
 

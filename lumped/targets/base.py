@@ -58,6 +58,7 @@ class Target(Record, ABC):
     large_strains: ClassVar[bool] = False
     endless: ClassVar[bool] = False
     through: ClassVar[str] = ""  # what no depth may reach, where that is the height pressed
+    lead: ClassVar[float] = 1.0  # how much an overlap at the first touch grows per depth
 
     @property
     def has_length(self) -> bool:
@@ -101,11 +102,6 @@ class Target(Record, ABC):
         of a flat surface, depth - height(r).
         """
         return np.asarray(np.asarray(depth, dtype=float) - shape.height(r))
-
-    @property
-    def lead(self) -> float:
-        """How much an overlap at the first touch grows per depth: half of it where both sides are alike."""
-        return 1.0
 
     def round_radius(self, shape: Shape) -> float:
         """Radius, m, of the smallest round surface that a contact may lie on, infinite where all are flat."""

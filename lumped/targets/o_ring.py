@@ -33,6 +33,7 @@ class ORing(Target):
     has_inertia: ClassVar[bool] = False
     large_strains: ClassVar[bool] = True
     through: ClassVar[str] = "the ring's thickness"
+    lead: ClassVar[float] = 0.5  # the other half is the other contact's
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -44,11 +45,6 @@ class ORing(Target):
         """depth/2 - (s - sqrt(s^2 - x^2)), s the section's radius and `r` the distance x from its top."""
         section = Sphere(self.section_radius)
         return np.asarray(self.lead * np.asarray(depth, dtype=float) - section.height(r))
-
-    @property
-    def lead(self) -> float:
-        """1/2: the other half is the other contact's."""
-        return 0.5
 
     def pressed_height(self, shape: Shape) -> float:
         """The section's height, m."""
