@@ -183,7 +183,7 @@ class Indentation:
             "numerics": self.numerics,
             "quantities": {name: asdict(quantity) for name, quantity in self.quantities.items()},
             "deviation": self.finite_size and self.finite_size.to_dict(),
-            "dimensionless": groups_at_rest(self.indenter, self.contact_radius),
+            "dimensionless": groups_at_rest(self.indenter.geometry, self.contact_radius),
             "error_budget": {cause: float(np.max(error)) for cause, error in self.budget.items()},
             "model_ledger": [entry.to_json(self.tolerance) for entry in self.model_ledger],
             "work": self.work,

@@ -14,8 +14,7 @@ from typing import ClassVar
 from lumped.numbers import Array
 from lumped.result.folder import RECORD, publish
 from lumped.result.history import History
-from lumped.scene.geometry import contact_modulus, relaxed_impact
-from lumped.scene.indenter import Indenter
+from lumped.scene.geometry import Geometry, relaxed_impact
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
 from lumped.schema import Table
@@ -382,15 +381,14 @@ def groups(scene: Scene, values: Mapping[str, float | None], history: History) -
     }
 
 
-def groups_at_rest(indenter: Indenter, contact_radius: Array) -> Table:
+def groups_at_rest(geometry: Geometry, contact_radius: Array) -> Table:
     """Those of a slow indentation, which knows no time: E_i/E_inf, nu, a/R and h/a with the largest of its radii, m."""
-    modulus = contact_modulus(indenter.shape, indenter.material, indenter.striker_material)
-    largest = float(contact_radius.max())
+    modulus, largest = geometry.contact_modulus, float(contact_radius.max())
     return {
         "E_i/E_inf": _over(modulus.instantaneous, modulus.relaxed),
-        "nu": indenter.material.nu,
-        "a/R": _over(largest, indenter.shape.tip_radius),
-        "h/a": _over(indenter.target.body_depth, largest),
+        "nu": geometry.material.nu,
+        "a/R": _over(largest, geometry.shape.tip_radius),
+        "h/a": _over(geometry.target.body_depth, largest),
     }
 
 

@@ -12,17 +12,7 @@ from typing import Annotated, Protocol
 from lumped.errors import BadInput, Fault, addressed
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material, Relaxation
-from lumped.scene.geometry import (
-    Geometry,
-    absurd_depth,
-    check_striker_material,
-    contact_modulus,
-    flying_faults,
-    places,
-    plasticity_faults,
-    relaxed_impact,
-    tables,
-)
+from lumped.scene.geometry import Geometry, absurd_depth, flying_faults, plasticity_faults, relaxed_impact
 from lumped.scene.tables import (
     LAWS,
     MASS,
@@ -76,9 +66,8 @@ class Scene:
         if (self.shape is None) != (self.material is None):
             missing = "striker.shape" if self.shape is None else "target.material"
             raise BadInput(Fault(self.source, missing, "missing; shape and material come together"))
-        if self.shape is not None:
-            self.target.check_striker(self.source, self.shape)
-            check_striker_material(self.source, self.target, self.shape, self.striker_material, self.model.inertia)
+        if self.has_geometry:
+            self.geometry.check_striker(self.source, self.model.inertia)
         density = None if self.material is None else self.material.density
         target = self.target if self.has_geometry else None
         faults = inertia_faults(self.source, self.model.inertia, density, target)
@@ -149,7 +138,7 @@ class Scene:
     @cached_property
     def contact_modulus(self) -> Relaxation:
         """E*(t) of the contact, Pa. Raises BadInput without geometry."""
-        return contact_modulus(self.geometry.shape, self.geometry.material, self.striker_material)
+        return self.geometry.contact_modulus
 
     @property
     def load_curve(self) -> LoadCurve:
@@ -204,8 +193,8 @@ class Scene:
         """The tables of striker and target."""
         striker: Table = {"mass": self.mass, "velocity": self.velocity}
         target: Table = {} if self.target_mass is None else {"mass": self.target_mass}
-        if self.shape is not None and self.material is not None:
-            own, held = tables(self.shape, self.target, self.material, self.striker_material)
+        if self.has_geometry:
+            own, held = self.geometry.tables()
             striker, target = own | striker, held | target
         return {"striker": striker, "target": target}
 
@@ -222,8 +211,7 @@ class Scene:
 
     def addressed(self) -> AbstractContextManager[None]:
         """Inside, what a part refuses is said of this scene's file and keys."""
-        known = {} if self.shape is None else places(self.shape, self.target, "striker.velocity")
-        return addressed(self.source, known)
+        return addressed(self.source, self.geometry.places("striker.velocity") if self.has_geometry else {})
 
     def check_law(self) -> None:
         """Raise BadInput for a law of the scene's own that has no answer for it."""
