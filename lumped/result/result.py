@@ -146,13 +146,8 @@ class LedgerEntry:
             return NO_KEY
         return f"to include it: --set {self.setting}"
 
-    @property
-    def sentence(self) -> str:
-        """What is left out, by how much that changes the peak force, and how to include it."""
-        return self.told_of(PEAK_FORCE)
-
     def told_of(self, force: str) -> str:
-        """The same of a force called so."""
+        """What is left out, by how much that changes a force called so, and how to include it."""
         left = "is left out" if self.treated in LEFT_OUT else f"is taken as {self.treated}"
         size = f"it may change the {force} by {percent(self.size)}" if self.known else "by how much is unknown"
         return f"{self.effect} {left}; {size}; {self.cure}"
