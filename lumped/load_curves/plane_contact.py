@@ -140,15 +140,6 @@ def folded(matrix: Array) -> Array:
     return np.asarray(matrix[:, :points] + matrix[:, points:])
 
 
-def grown(rule: Collocation, half_width: float, matrix: Array, height: Array) -> Grown:
-    """Solves matrix Q = depth - height for the depth at which Q(1) = 0; shapes (m, m) and (m,)."""
-    flat, bent = np.linalg.solve(matrix, np.stack([np.ones_like(height), height], axis=1)).T
-    depth = float((rule.edge @ bent) / (rule.edge @ flat))
-    q = depth * flat - bent
-    force, stiffness = half_width * rule.total(np.stack([q, flat]))
-    return Grown(rule, half_width, q, depth, float(force), 1.0 / float(stiffness))
-
-
 def _mirrored(matrix: Array) -> Array:
     points = matrix.shape[0]
     return np.concatenate([matrix[:, :points], matrix[:, : points - 1 : -1]], axis=1)
@@ -201,11 +192,16 @@ class LineCurve(TabulatedCurve):
         return growing_edges(self.length, self.profile.extent, self.reach)
 
     def grown(self, half_width: float, refinement: float) -> Grown:
-        """The contact at one half-width."""
+        """The contact at one half-width: matrix Q = depth - height for the depth at which Q(1) = 0."""
         rule = collocation(int(refinement * self.points(half_width)))
         smooth = self.smooth(rule.nodes, half_width, refinement)
         matrix = 2.0 * half_width / np.pi * (folded(rule.logarithm) + 2.0 * rule.weight * smooth)
-        return grown(rule, half_width, matrix, self.profile.height(half_width * rule.nodes))
+        height = self.profile.height(half_width * rule.nodes)
+        flat, bent = np.linalg.solve(matrix, np.stack([np.ones_like(height), height], axis=1)).T
+        depth = float((rule.edge @ bent) / (rule.edge @ flat))
+        q = depth * flat - bent
+        force, stiffness = half_width * rule.total(np.stack([q, flat]))
+        return Grown(rule, half_width, q, depth, float(force), 1.0 / float(stiffness))
 
     def sample(self, contact_radius: float, refinement: float) -> Array:
         """f, d and c."""

@@ -59,6 +59,8 @@ class Target(Record, ABC):
     endless: ClassVar[bool] = False
     through: ClassVar[str] = ""  # what no depth may reach, where that is the height pressed
     lead: ClassVar[float] = 1.0  # how much an overlap at the first touch grows per depth
+    strikers: ClassVar[tuple[str, ...]] = ()  # names of the only shapes that strike it, where it is for few
+    called: ClassVar[str] = ""  # in words, where its name is none
 
     @property
     def has_length(self) -> bool:
@@ -171,7 +173,12 @@ class Target(Record, ABC):
         return []
 
     def check_striker(self, source: str, shape: Shape) -> None:
-        """Raise BadInput, naming the key, for a striker which this target is not for; here any rigid one will do."""
+        """Raise BadInput, naming the key, for a striker which this target is not for: without `strikers` any rigid one
+        will do.
+        """
+        if self.strikers and shape.name not in self.strikers:
+            reason = f"{shape.name}: {self.called or f'a {self.name}'} is struck by a {self.strikers[0]}"
+            raise BadInput(Fault(source, "striker.shape", reason))
         if isinstance(shape, Block):
             raise BadInput(Fault(source, "striker.shape", f'{shape.name}: it strikes target.shape = "plane" alone'))
 

@@ -33,6 +33,8 @@ class ORing(Target):
     has_inertia: ClassVar[bool] = False
     large_strains: ClassVar[bool] = True
     through: ClassVar[str] = "the ring's thickness"
+    strikers: ClassVar[tuple[str, ...]] = ("punch",)
+    called: ClassVar[str] = "an O-ring"
     lead: ClassVar[float] = 0.5  # the other half is the other contact's
 
     def __post_init__(self) -> None:
@@ -76,9 +78,8 @@ class ORing(Target):
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput for a striker that is no punch, or does not cover the ring."""
+        super().check_striker(source, shape)
         outside = self.mean_radius + self.section_radius
-        if shape.name != "punch":
-            raise BadInput(Fault(source, "striker.shape", f"{shape.name}: an O-ring is struck by a punch"))
         if (shape.fixed_radius or 0.0) < outside:
             reason = f"{shape.fixed_radius:g}: accepted from the ring's outer radius {outside:g} m on"
             raise BadInput(Fault(source, "striker.radius", reason))
