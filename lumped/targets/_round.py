@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass, replace
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lumped.errors import Fault
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
 from lumped.numbers import Array
@@ -33,8 +34,6 @@ class RoundTarget(Target):
 
     radius: Annotated[float, Key(SIZE, "radius of the struck body")]
     support: Annotated[str | None, SUPPORT]
-    has_inertia: ClassVar[bool] = False
-    yielding_strikers: ClassVar[bool] = True
 
     @property
     @abstractmethod
@@ -66,6 +65,10 @@ class RoundTarget(Target):
             return vibrations(material, pulse, whole)
         added = whole / 6.0 / pulse.mass
         return min(added, 1.0), MOVES.format(added)
+
+    def yielding_faults(self, source: str, shape: Shape, inertia: bool) -> list[Fault]:
+        """Nothing: it is struck by its like."""
+        return []
 
     def waves_under(self, shape: Shape) -> bool:
         """Only where it flies."""

@@ -46,15 +46,14 @@ class FreeEnd:
 class Target(Record, ABC):
     """The geometry of a struck body; its `name` is that of the scene file, its keys stand beside its fields.
 
-    `deformable`: whether it has a material; `yielding_strikers`: whether its striker may have one. `has_inertia`:
-    whether its waves can be followed; `only_with_inertia`: whether nothing is left of it without them. `large_strains`:
-    whether they are built of it, or of what strikes it, at all. `endless`: whether it goes on beyond any mesh.
+    `deformable`: whether it has a material. `has_inertia`: whether its waves can be followed; `only_with_inertia`:
+    whether nothing is left of it without them. `large_strains`: whether they are built of it, or of what strikes it, at
+    all. `endless`: whether it goes on beyond any mesh.
     """
 
-    has_inertia: ClassVar[bool]
+    has_inertia: ClassVar[bool] = False
     only_with_inertia: ClassVar[bool] = False
     deformable: ClassVar[bool] = True
-    yielding_strikers: ClassVar[bool] = False
     large_strains: ClassVar[bool] = False
     endless: ClassVar[bool] = False
     through: ClassVar[str] = ""  # what no depth may reach, where that is the height pressed
@@ -159,8 +158,6 @@ class Target(Record, ABC):
 
     def yielding_faults(self, source: str, shape: Shape, inertia: bool) -> list[Fault]:
         """What is wrong with a striker of this shape that has a material as the target has, with inertia or without."""
-        if self.deformable and self.yielding_strikers:
-            return []
         reason = f'target.shape = "{self.name}" is struck by a rigid body in this version; leave it out'
         return [Fault(source, "striker.material", reason)]
 

@@ -25,7 +25,6 @@ class HalfSpace(Target):
     datum_depth: Annotated[float | None, Key(Number(1e-9, 1e9, "m"), "how far below touch the datum lies")] = None
     name: ClassVar[str] = "half_space"
     has_inertia: ClassVar[bool] = True
-    yielding_strikers: ClassVar[bool] = True
     large_strains: ClassVar[bool] = True
     endless: ClassVar[bool] = True
 

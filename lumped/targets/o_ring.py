@@ -30,7 +30,6 @@ class ORing(Target):
     mean_radius: Annotated[float, Key(SIZE, "from the axis to the middle of the section")]
     section_radius: Annotated[float, Key(SIZE, "radius of the section")]
     name: ClassVar[str] = "o_ring"
-    has_inertia: ClassVar[bool] = False
     large_strains: ClassVar[bool] = True
     through: ClassVar[str] = "the ring's thickness"
     strikers: ClassVar[tuple[str, ...]] = ("punch",)

@@ -30,7 +30,6 @@ class Ring(Target):
     inner_radius: Annotated[float, Key(SIZE, "radius of the hole")]
     thickness: Annotated[float, Key(SIZE, "between the hole and what holds the ring")]
     name: ClassVar[str] = "ring"
-    has_inertia: ClassVar[bool] = False
     large_strains: ClassVar[bool] = True
     through: ClassVar[str] = "the ring's thickness"
     strikers: ClassVar[tuple[str, ...]] = ("cylinder", "parabolic_cylinder")

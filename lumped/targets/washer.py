@@ -25,7 +25,6 @@ class Washer(Target):
     height: Annotated[float, Key(SIZE, "thickness of the washer")]
     base: Annotated[str, BASE]
     name: ClassVar[str] = "washer"
-    has_inertia: ClassVar[bool] = False
     large_strains: ClassVar[bool] = True
     through: ClassVar[str] = "the washer's height"
     strikers: ClassVar[tuple[str, ...]] = ("punch",)
