@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from lumped.errors import BadInput, Fault
 from lumped.load_curves import HertzImpact
-from lumped.materials import Creep, Material, Relaxation
+from lumped.materials import Material, Relaxation
 from lumped.materials.energies.base import DEFAULT, ENERGIES, energy_of
 from lumped.scene.tables import Model
 from lumped.schema import Table
@@ -70,12 +70,12 @@ class Geometry:
         own = self.shape.modulus(self.material)
         if self.striker_material is None:
             return own
-        return _together(own.creep(), self.shape.modulus(self.striker_material).creep()).relaxation()
+        return (own.creep() + self.shape.modulus(self.striker_material).creep()).relaxation()
 
     def check_striker(self, source: str, inertia: bool) -> None:
         """Raise BadInput for a striker which the target is not for, or whose material is one too many."""
         self.target.check_striker(source, self.shape)
-        refused = self.striker_material and self.target.yielding_faults(source, self.shape, inertia)
+        refused = [] if self.striker_material is None else self.target.yielding_faults(source, self.shape, inertia)
         if refused:
             raise BadInput(refused)
 
@@ -93,16 +93,6 @@ class Geometry:
         if self.target.deformable:
             held["material"] = self.material.to_dict()
         return own, held
-
-
-def _together(first: Creep, second: Creep) -> Creep:
-    """Two compliances under one load."""
-    return Creep(
-        first.instantaneous + second.instantaneous,
-        first.compliances + second.compliances,
-        first.times + second.times,
-        first.fluidity + second.fluidity,
-    )
 
 
 def dashpot_as_spring(shape: Shape, viscosity: float, mass: float, velocity: float) -> float:
