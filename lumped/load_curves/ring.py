@@ -254,7 +254,7 @@ def ring_compliance(nu: float, ratio: float, rule: Collocation, angle: float) ->
 
 
 def _side(nu: float) -> float:
-    """Weight of 1/(n^2-1) in c_n."""
+    """m, the weight of 1/(n^2-1) in c_n."""
     return (1.0 - 2.0 * nu) / (1.0 - nu)
 
 
@@ -288,8 +288,8 @@ def compliances(nu: float, ratio: float) -> Array:
 
 
 def hole(nu: float, orders: Array) -> Array:
-    """c_n = (2n + (1-2nu)/(1-nu))/(n^2-1) of a hole in an infinite body, n >= 2."""
-    return np.asarray((2.0 * orders + (1.0 - 2.0 * nu) / (1.0 - nu)) / (orders**2 - 1.0))
+    """c_n = (2n + m)/(n^2-1), m = (1-2nu)/(1-nu), of a hole in an infinite body, n >= 2."""
+    return np.asarray((2.0 * orders + _side(nu)) / (orders**2 - 1.0))
 
 
 def _uniform(nu: float, ratio: float) -> float:

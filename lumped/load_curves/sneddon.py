@@ -5,10 +5,9 @@ Sneddon 1965, doi 10.1016/0020-7225(65)90019-4.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import cos, gamma, inf, pi, radians, sin, sqrt, tan
+from math import atanh, cos, gamma, inf, pi, radians, sin, sqrt, tan, tanh
 from typing import ClassVar
 
 import numpy as np
@@ -146,13 +145,13 @@ class SneddonSphere(HalfSpaceCurve):
     def contact_radius(self, depth: ArrayLike) -> Real:
         """a = R tanh u with u tanh u = depth/R, m."""
         if isinstance(depth, float):
-            return self.radius * math.tanh(_angle(max(depth, 0.0) / self.radius, math.tanh))
+            return self.radius * tanh(_angle(max(depth, 0.0) / self.radius, tanh))
         return self.radius * _tanh_and_rest(self._ratio(depth))[0]
 
     def depth(self, contact_radius: ArrayLike) -> Real:
         """a artanh(a/R), m; infinite at a = R, nan beyond."""
         if isinstance(contact_radius, float) and abs(contact_radius) < self.radius:
-            return contact_radius * math.atanh(contact_radius / self.radius)
+            return contact_radius * atanh(contact_radius / self.radius)
         a = np.asarray(contact_radius)
         with np.errstate(divide="ignore", invalid="ignore"):
             return a * np.arctanh(a / self.radius)

@@ -118,8 +118,7 @@ class TabulatedCurve(LoadCurve):
         panels = int(np.searchsorted(self.edges, a.max(initial=0.0)))
         if panels > len(self.edges) - 1:
             raise NotReached(f"the load curve serves contact radii up to {self.edges[-1]:g} m, not {a.max():g}")
-        flat = TabulatedState(*(np.asarray(part) for part in self._at(a.ravel(), max(panels, 1))))
-        return TabulatedState(*(part.reshape(a.shape) for part in flat))
+        return TabulatedState(*(np.reshape(part, a.shape) for part in self._at(a.ravel(), max(panels, 1))))
 
     def depth(self, contact_radius: ArrayLike) -> Real:
         """Depth at a contact radius, m."""
