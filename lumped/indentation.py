@@ -190,8 +190,7 @@ class Indentation:
             "provenance": provenance(),
             "timing": self.timing,
         }
-        found: Table = plain(content)
-        return found
+        return dict(plain(content))
 
     def write(self, directory: Path) -> None:
         """Make indentation.csv and result.json the content of a folder of results.

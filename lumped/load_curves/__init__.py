@@ -12,7 +12,6 @@ from lumped.load_curves.layer import LineLayer as LineLayer
 from lumped.load_curves.layer import PointLayer as PointLayer
 from lumped.load_curves.plane_contact import CylinderProfile as CylinderProfile
 from lumped.load_curves.plane_contact import HalfPlane as HalfPlane
-from lumped.load_curves.plane_contact import LineProfile as LineProfile
 from lumped.load_curves.plane_contact import ParabolaProfile as ParabolaProfile
 from lumped.load_curves.ring import RodInRing as RodInRing
 from lumped.load_curves.sneddon import ConeCurve as ConeCurve

@@ -253,8 +253,7 @@ class Result:
             "provenance": self.provenance,
             "timing": self.timing,
         }
-        found: Table = plain(content)
-        return found
+        return dict(plain(content))
 
     def write(self, directory: Path) -> None:
         """Make history.csv, result.json and, where it is told, recovery.csv the content of a folder of results.
