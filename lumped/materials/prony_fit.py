@@ -103,9 +103,8 @@ def of_samples(times: ArrayLike, moduli: ArrayLike) -> PronyFit:
     t, values = np.asarray(times, dtype=float), np.asarray(moduli, dtype=float)
     inner = t[(t > 0.0) & np.isfinite(t)]
     if t.ndim != 1 or t.shape != values.shape or inner.size < 2 or np.isnan(t).any() or t.min() < 0.0:
-        raise BadInput(
-            Fault("samples", "times", "accepted: one-dimensional, as many as moduli, two or more above zero")
-        )
+        reason = "accepted: one-dimensional, as many as moduli, two or more above zero"
+        raise BadInput(Fault("samples", "times", reason))
     if not np.all(np.isfinite(values)) or np.any(values <= 0.0):
         raise BadInput(Fault("samples", "moduli", "accepted: finite values above zero, in Pa"))
     spectrum = fitted(Decay(values, values, t), _candidates(inner.min(), inner.max(), BEYOND_DATA, DENSE))
@@ -135,9 +134,8 @@ def _check(window: tuple[float, float], tolerance: float, relaxed: float | None,
         faults.append(Fault("prony fit", "tolerance", f"accepted: from {LEAST_TOLERANCE:g} to below 1"))
     for name, limit in (("relaxed", relaxed), ("glassy", glassy)):
         if limit is not None and not 0.0 < limit < math.inf:
-            faults.append(
-                Fault("prony fit", name, "accepted: a finite modulus above zero, in Pa; leave it out otherwise")
-            )
+            reason = "accepted: a finite modulus above zero, in Pa; leave it out otherwise"
+            faults.append(Fault("prony fit", name, reason))
     if faults:
         raise BadInput(faults)
 

@@ -172,24 +172,17 @@ def plasticity_faults(source: str, model: Model, geometry: Geometry | None, impa
         return []
     if geometry is None:
         return [Fault(source, "model.plasticity", "true: a law of its own has no material; accepted: false")]
-    material, state, shapes = geometry.material, "with model.plasticity", ", ".join(YIELDING_UNDER)
+    shape, target, material = geometry.shape, geometry.target, geometry.material
+    elastic, state, shapes = material.young.is_elastic, "with model.plasticity", ", ".join(YIELDING_UNDER)
     wrong = [
         (material.yield_strength is None, "target.material.yield_strength", f"missing, in Pa; {state} it is needed"),
-        (
-            not material.young.is_elastic,
-            "target.material.law",
-            f"no viscosity {state} in this version; accepted: elastic",
-        ),
+        (not elastic, "target.material.law", f"no viscosity {state} in this version; accepted: elastic"),
         (model.inertia, "model.inertia", f"true: no waves {state} in this version; accepted: false"),
         (model.finite, "model.kinematics", f"finite: no large strains {state} in this version; accepted: small"),
         (impacts > 1, "motion.impacts", f"{impacts}: one impact {state} in this version; accepted: 1"),
         (geometry.striker_material is not None, "striker.material", f"the striker is rigid {state}; leave it out"),
-        (geometry.target.name != "half_space", "target.shape", f"{geometry.target.name}: {state} accepted half_space"),
-        (
-            geometry.shape.name not in YIELDING_UNDER,
-            "striker.shape",
-            f"{geometry.shape.name}: {state} accepted {shapes}",
-        ),
+        (target.name != "half_space", "target.shape", f"{target.name}: {state} accepted half_space"),
+        (shape.name not in YIELDING_UNDER, "striker.shape", f"{shape.name}: {state} accepted {shapes}"),
     ]
     return [Fault(source, key, reason) for refused, key, reason in wrong if refused]
 

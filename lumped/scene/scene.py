@@ -66,21 +66,20 @@ class Scene:
         if (self.shape is None) != (self.material is None):
             missing = "striker.shape" if self.shape is None else "target.material"
             raise BadInput(Fault(self.source, missing, "missing; shape and material come together"))
-        if self.has_geometry:
-            self.geometry.check_striker(self.source, self.model.inertia)
+        geometry = self.geometry if self.has_geometry else None
+        if geometry is not None:
+            geometry.check_striker(self.source, self.model.inertia)
         density = None if self.material is None else self.material.density
-        target = self.target if self.has_geometry else None
+        target = None if geometry is None else geometry.target
         faults = inertia_faults(self.source, self.model.inertia, density, target)
         faults += mass_faults(self.source, self.mass, self.swinging_mass)
         faults += gravity_faults(self.source, self.model)
-        faults += plasticity_faults(
-            self.source, self.model, self.geometry if self.has_geometry else None, self.motion.impacts
-        )
-        if self.model.finite and not self.has_geometry:
+        faults += plasticity_faults(self.source, self.model, geometry, self.motion.impacts)
+        if self.model.finite and geometry is None:
             reason = "finite: a law of its own has no body that is strained; accepted: small"
             faults.append(Fault(self.source, "model.kinematics", reason))
-        if self.model.inertia and self.has_geometry:
-            faults += flying_faults(self.source, self.geometry, self.mass, self.target_mass)
+        if self.model.inertia and geometry is not None:
+            faults += flying_faults(self.source, geometry, self.mass, self.target_mass)
         if faults:
             raise BadInput(faults)
         if self.shape is not None:
@@ -228,10 +227,8 @@ class Scene:
     def check_memory(self) -> None:
         """Raise BadInput where no surface alone remembers: of a body with lengths, nu(t) changes the load curve."""
         if not self.geometry.surface_remembers:
-            reason = '"bulk" changes nu in time, which no load curve follows'
-            raise BadInput(
-                Fault(self.source, "target.material.constant", f'{reason}; accepted: "poisson", or --method fe')
-            )
+            reason = '"bulk" changes nu in time, which no load curve follows; accepted: "poisson", or --method fe'
+            raise BadInput(Fault(self.source, "target.material.constant", reason))
 
     def check_sunk(self, depth: float, contact_radius: float = 0.0) -> None:
         """Raise BadInput where an impact went to a depth, m, or a contact radius, m, that is too much."""
