@@ -183,15 +183,14 @@ class Indentation:
             "numerics": self.numerics,
             "quantities": {name: asdict(quantity) for name, quantity in self.quantities.items()},
             "deviation": self.finite_size and self.finite_size.to_dict(),
-            "dimensionless": groups_at_rest(self.indenter, self.contact_radius),
+            "dimensionless": groups_at_rest(self.indenter.geometry, self.contact_radius),
             "error_budget": {cause: float(np.max(error)) for cause, error in self.budget.items()},
             "model_ledger": [entry.to_json(self.tolerance) for entry in self.model_ledger],
             "work": self.work,
             "provenance": provenance(),
             "timing": self.timing,
         }
-        found: Table = plain(content)
-        return found
+        return dict(plain(content))
 
     def write(self, directory: Path) -> None:
         """Make indentation.csv and result.json the content of a folder of results.

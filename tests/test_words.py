@@ -28,7 +28,7 @@ def entry(effect: str, **keys: object) -> LedgerEntry:
 def test_an_effect_says_its_size_and_the_option_that_includes_it() -> None:
     falls = entry("gravity", model__direction="down")
     said = "gravity is left out; it may change the peak force by 685 %; to include it: --set model.gravity=9.81"
-    assert falls.sentence == said
+    assert falls.told_of("peak force") == said
     assert (
         falls.line(1e-3) == "gravity (neglected): 685 %, above the tolerance; to include it: --set model.gravity=9.81"
     )

@@ -49,9 +49,31 @@ class LoadCurve(ABC):
         """The contact radius that no depth reaches, m: infinite unless the profile ends."""
         return float("inf")
 
-    @abstractmethod
+    @property
+    def least_radius(self) -> float:
+        """Contact radius of the first touch of a profile, m: zero, but under its flat end."""
+        return 0.0
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """Contact radii, ascending, m, beyond which depth(a) starts anew as a root does: where the face bends."""
+        return ()
+
+    @property
+    def root_before(self) -> float:
+        """Where depth(a), continued below zero, would be none again, m: near a tip that is hardly one."""
+        return float("-inf")
+
     def force(self, depth: ArrayLike) -> Real:
         """F/E* at a depth."""
+        return self.force_and_slope(depth)[0]
+
+    @abstractmethod
+    def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
+        """F/E* and its slope at a depth: at the edge the profile meets the surface with the stiffness of a flat punch.
+
+        Where the force alone costs less, it has a formula of its own.
+        """
 
     @abstractmethod
     def contact_radius(self, depth: ArrayLike) -> Real:
@@ -66,16 +88,8 @@ class LoadCurve(ABC):
         """d depth / d a."""
 
     @abstractmethod
-    def dforce_ddepth(self, depth: ArrayLike) -> Real:
-        """d(F/E*)/d depth: at the edge the profile meets the surface with the stiffness of a flat punch."""
-
-    @abstractmethod
     def pressure(self, radius: ArrayLike, contact_radius: float) -> Array:
         """Pressure p/E* at a distance from the axis while the contact has this radius, zero outside of it."""
-
-    def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
-        """F/E* and dF/d depth at a depth, for those who need both at every step."""
-        return self.force(depth), self.dforce_ddepth(depth)
 
     def bending(self, depth: float) -> float:
         """F/E* over e^2/2 of a depth that goes on by e, m, for what the overlaps of a held contact bend: zero, 1/m.
@@ -94,23 +108,3 @@ class LoadCurve(ABC):
         nodes, weights = gauss(GAUSS_POINTS)
         x = a[..., None] * nodes
         return np.asarray(a * ((self.force_at(x) * self.depth_slope(x)) @ weights))
-
-    def pressure_at(self, radius: ArrayLike, depth: float) -> Array:
-        """Pressure p/E* at a distance from the axis, m, and a depth, m."""
-        return self.pressure(radius, float(self.contact_radius(float(depth))))
-
-
-class KnownTogether(LoadCurve):
-    """A curve whose force and slope are found by one and the same work."""
-
-    @abstractmethod
-    def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
-        """F/E* and dF/d depth at a depth."""
-
-    def force(self, depth: ArrayLike) -> Real:
-        """F/E* at a depth."""
-        return self.force_and_slope(depth)[0]
-
-    def dforce_ddepth(self, depth: ArrayLike) -> Real:
-        """d(F/E*)/d depth."""
-        return self.force_and_slope(depth)[1]

@@ -56,13 +56,11 @@ class BentCurve(KnownByRadius):
 
     def depth(self, contact_radius: ArrayLike) -> Real:
         """a [pi/2 s + sum c_k (w_k - t_k angle_k)], w_k = sqrt(a^2 - t_k^2), angle_k = arccos(t_k/a), m."""
-        a = np.asarray(contact_radius, dtype=float)
-        return a * (0.5 * np.pi * self.slope + self._seen(a).rest @ np.array(self.bends))
+        return self.depth_and_slope(np.asarray(contact_radius, dtype=float))[0]
 
     def depth_slope(self, contact_radius: ArrayLike) -> Real:
         """pi/2 s + sum c_k (2 w_k - t_k angle_k)."""
-        seen = self._seen(np.asarray(contact_radius, dtype=float))
-        return 0.5 * np.pi * self.slope + (seen.reach + seen.rest) @ np.array(self.bends)
+        return self.depth_and_slope(np.asarray(contact_radius, dtype=float))[1]
 
     def depth_and_slope(self, contact_radius: Array) -> tuple[Array, Array]:
         """Both of what is seen once."""
@@ -93,15 +91,10 @@ class BentCurve(KnownByRadius):
         end = np.arcsinh(np.sqrt(np.maximum(contact_radius**2 - outer**2, 0.0)) / apart)
         nodes, weights = gauss(GAUSS_POINTS)
         turn = end[..., None] * nodes
-        near, far = (
-            apart[..., None] * np.sinh(turn),
-            apart[..., None] * np.cosh(turn),
-        )  # from the outer, the inner place
-        x = np.hypot(near, outer[..., None])
-        bend_is_outer = (t >= place)[..., None]
-        reach = np.where(bend_is_outer, near, far)
+        near, far = (apart[..., None] * of(turn) for of in (np.sinh, np.cosh))  # from the outer, the inner place
+        reach = np.where((t >= place)[..., None], near, far)
         angle = np.arctan2(reach, t[:, None])
-        share = np.where(bend_is_outer, near, far) / x  # dx over the other root
+        share = reach / np.hypot(near, outer[..., None])  # dx over the other root
         rows = end * (((2.0 * reach - t[:, None] * angle) * share) @ weights)
         return np.where(inside, cone + rows @ np.array(self.bends) / np.pi, 0.0)
 

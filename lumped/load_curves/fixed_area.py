@@ -46,9 +46,9 @@ class FixedArea(LoadCurve):
         """0, infinite beyond the end."""
         return self.depth(contact_radius)
 
-    def dforce_ddepth(self, depth: ArrayLike) -> Real:
-        """S."""
-        return np.where(np.asarray(depth) >= 0.0, self.stiffness, 0.0)
+    def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
+        """S depth, and S."""
+        return self.force(depth), np.where(np.asarray(depth) >= 0.0, self.stiffness, 0.0)
 
     def energy(self, depth: ArrayLike) -> Array:
         """S depth^2/2."""

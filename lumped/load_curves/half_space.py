@@ -21,9 +21,9 @@ class HalfSpaceCurve(LoadCurve):
     of the indenter (Sneddon 1965, doi 10.1016/0020-7225(65)90019-4).
     """
 
-    def dforce_ddepth(self, depth: ArrayLike) -> Real:
-        """2 a."""
-        return 2.0 * self.contact_radius(depth)
+    def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
+        """F/E*, m^2, and 2 a, m."""
+        return self.force(depth), 2.0 * self.contact_radius(depth)
 
     def energy(self, depth: ArrayLike) -> Array:
         """Work of indentation int_0^depth F d depth = depth (F - a depth) + int_0^a depth(x)^2 dx."""
@@ -49,21 +49,6 @@ class HalfSpaceCurve(LoadCurve):
 
 class KnownByRadius(HalfSpaceCurve):
     """A curve whose depth and force are known over the contact radius; the radius of a depth is found by Newton."""
-
-    @property
-    def breaks(self) -> tuple[float, ...]:
-        """Contact radii, ascending, m, beyond which depth(a) starts anew as a root does: where the face bends."""
-        return ()
-
-    @property
-    def least_radius(self) -> float:
-        """Contact radius of the first touch, m: zero, but under a flat end."""
-        return 0.0
-
-    @property
-    def root_before(self) -> float:
-        """Where depth(a), continued below zero, would be none again, m: near a tip that is hardly one."""
-        return float("-inf")
 
     @abstractmethod
     def force_at(self, contact_radius: ArrayLike) -> Real:

@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike
 from lumped.errors import BadInput, Fault, nearest
 from lumped.load_curves.base import LoadCurve, check_below, elastic_faults
 from lumped.load_curves.fixed_area import FixedArea, under_flat_end
-from lumped.load_curves.half_space import HalfSpaceCurve, KnownByRadius
+from lumped.load_curves.half_space import HalfSpaceCurve
 from lumped.load_curves.plane_contact import LineCurve
 from lumped.load_curves.tabulated import REACH, TabulatedCurve, TabulatedState, broken_edges, growing_edges
 from lumped.numbers import Array, gauss
@@ -102,37 +102,32 @@ class LayerCurve(TabulatedCurve):
     def edges(self) -> tuple[float, ...]:
         """Panels grow with the distance from the axis, and from every bend of the face."""
         smooth = growing_edges(self.layer.thickness, self.half_space.extent)
-        inside = [edge for edge in smooth if edge > self._least_radius]
-        before = self.half_space.root_before if isinstance(self.half_space, KnownByRadius) else -np.inf
-        return broken_edges([self._least_radius, *inside], self.breaks, before)
+        least = self.half_space.least_radius
+        inside = [edge for edge in smooth if edge > least]
+        return broken_edges([least, *inside], self.breaks, self.half_space.root_before)
 
     @cached_property
     def breaks(self) -> tuple[float, ...]:
         """Those of the half-space's own curve; on the axis a bend is a tip's curvature."""
-        curve = self.half_space
-        return tuple(one for one in curve.breaks if one > 0.0) if isinstance(curve, KnownByRadius) else ()
-
-    @property
-    def _least_radius(self) -> float:
-        """Contact radius of the first touch, m."""
-        return self.half_space.least_radius if isinstance(self.half_space, KnownByRadius) else 0.0
+        return tuple(one for one in self.half_space.breaks if one > 0.0)
 
     def sample(self, contact_radius: float, refinement: float) -> Array:
         """Depth, force and stiffness over those of the half-space at this contact radius."""
         equation, h = self._equation(contact_radius, refinement), self.layer.thickness
         nodes, weights, edge, punch = equation.between([one / h for one in self.breaks if one < contact_radius])
         profile = self.half_space.depth(h * nodes)
-        own = float(self.half_space.depth(contact_radius))
+        own, own_force = (float(of(contact_radius)) for of in (self.half_space.depth, self.half_space.force_at))
         depth = (own + (weights * edge) @ profile) / (1.0 + equation.weights @ equation.edge)
         force = 2.0 * h * ((weights * punch) @ (depth - profile))
         stiffness = 2.0 * h * (equation.weights @ equation.punch)
-        return np.array([depth / own, force / self._own_force(contact_radius), stiffness / (2.0 * contact_radius)])
+        return np.array([depth / own, force / own_force, stiffness / (2.0 * contact_radius)])
 
     def state(self, contact_radius: Array, smooth: Array, slopes: Array) -> TabulatedState:
         """The half-space's values times the tabulated ratios."""
-        a, own = contact_radius, self.half_space.depth(contact_radius)
-        slope = self.half_space.depth_slope(a) * smooth[0] + own * slopes[0]
-        return TabulatedState(own * smooth[0], slope, self._own_force(a) * smooth[1], 2.0 * a * smooth[2])
+        a, curve = contact_radius, self.half_space
+        own = curve.depth(a)
+        slope = curve.depth_slope(a) * smooth[0] + own * slopes[0]
+        return TabulatedState(own * smooth[0], slope, curve.force_at(a) * smooth[1], 2.0 * a * smooth[2])
 
     def contact_radius(self, depth: ArrayLike) -> Array:
         """Contact radius a at a depth below the thickness, m; raises BadInput for deeper ones."""
@@ -146,10 +141,6 @@ class LayerCurve(TabulatedCurve):
         phi = equation.answer(depth - self.half_space.depth(self.layer.thickness * equation.nodes))
         inner = abel(equation, phi, np.asarray(radius, dtype=float) / self.layer.thickness)
         return self.half_space.pressure(radius, contact_radius) + inner / self.layer.thickness
-
-    def _own_force(self, contact_radius: ArrayLike) -> Array:
-        """F/E* of the half-space at this contact radius, m^2."""
-        return np.asarray(self.half_space.force_at(contact_radius))
 
     def _equation(self, contact_radius: float, refinement: float) -> DualEquation:
         ratio = contact_radius / self.layer.thickness

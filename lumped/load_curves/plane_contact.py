@@ -1,4 +1,5 @@
-"""Symmetric frictionless contact in plane strain, per unit length: profiles, collocation, and the tabulated curve.
+"""Symmetric frictionless contact in plane strain, per unit length: profiles, collocation, and the tabulated curve;
+the half-plane's, where depth has a meaning only against a point some way below.
 
 With y = x/b on the contact |x| <= b the pressure is E* Q(y)/sqrt(1-y^2) with an even Q, and Q(1) = 0 where the
 profile leaves the surface smoothly. Collocation is at Chebyshev's nodes: kernels -ln|y-y'| and |y-y'|, times smooth
@@ -10,15 +11,18 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cache, cached_property
-from math import inf
+from math import inf, log
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault
+from lumped.load_curves.base import elastic_faults
 from lumped.load_curves.tabulated import REACH, TabulatedCurve, TabulatedState, growing_edges
 from lumped.numbers import Array
+
+HALF_PLANE_POINTS = 24  # work: collocation points over the half-width: the kernel is smooth, as many do for all widths
 
 
 @dataclass(frozen=True)
@@ -136,15 +140,6 @@ def folded(matrix: Array) -> Array:
     return np.asarray(matrix[:, :points] + matrix[:, points:])
 
 
-def grown(rule: Collocation, half_width: float, matrix: Array, height: Array) -> Grown:
-    """Solves matrix Q = depth - height for the depth at which Q(1) = 0; shapes (m, m) and (m,)."""
-    flat, bent = np.linalg.solve(matrix, np.stack([np.ones_like(height), height], axis=1)).T
-    depth = float((rule.edge @ bent) / (rule.edge @ flat))
-    q = depth * flat - bent
-    force, stiffness = half_width * rule.total(np.stack([q, flat]))
-    return Grown(rule, half_width, q, depth, float(force), 1.0 / float(stiffness))
-
-
 def _mirrored(matrix: Array) -> Array:
     points = matrix.shape[0]
     return np.concatenate([matrix[:, :points], matrix[:, : points - 1 : -1]], axis=1)
@@ -197,11 +192,16 @@ class LineCurve(TabulatedCurve):
         return growing_edges(self.length, self.profile.extent, self.reach)
 
     def grown(self, half_width: float, refinement: float) -> Grown:
-        """The contact at one half-width."""
+        """The contact at one half-width: matrix Q = depth - height for the depth at which Q(1) = 0."""
         rule = collocation(int(refinement * self.points(half_width)))
         smooth = self.smooth(rule.nodes, half_width, refinement)
         matrix = 2.0 * half_width / np.pi * (folded(rule.logarithm) + 2.0 * rule.weight * smooth)
-        return grown(rule, half_width, matrix, self.profile.height(half_width * rule.nodes))
+        height = self.profile.height(half_width * rule.nodes)
+        flat, bent = np.linalg.solve(matrix, np.stack([np.ones_like(height), height], axis=1)).T
+        depth = float((rule.edge @ bent) / (rule.edge @ flat))
+        q = depth * flat - bent
+        force, stiffness = half_width * rule.total(np.stack([q, flat]))
+        return Grown(rule, half_width, q, depth, float(force), 1.0 / float(stiffness))
 
     def sample(self, contact_radius: float, refinement: float) -> Array:
         """f, d and c."""
@@ -227,3 +227,40 @@ class LineCurve(TabulatedCurve):
             return np.zeros(np.shape(radius))
         here = self.grown(contact_radius, 1.0)
         return here.collocation.at(here.q, np.asarray(radius, dtype=float) / contact_radius)
+
+
+@dataclass(frozen=True)
+class HalfPlane(LineCurve):
+    """Depth is the approach of the cylinder to the material point `datum_depth` (m) below first touch, per unit length.
+
+    A line load P at x' moves the surface at x, against that point, by (2 P/(pi E*)) [ln(r/|x-x'|) - d^2/(2(1-nu) r^2)]
+    with r^2 = d^2 + x'^2 (Flamant 1892). Half-widths up to the datum's depth and to 0.85 of a true cylinder's radius.
+    `nu` in (-1, 0.5]. Raises BadInput.
+    """
+
+    datum_depth: float
+    nu: float
+    reach: ClassVar[float] = 1.0
+
+    def __post_init__(self) -> None:
+        faults = elastic_faults("half_space", self.nu)
+        if not 0.0 < self.datum_depth < inf:
+            reason = "in plane strain the half-plane has no finite compliance without it"
+            message = f"must be above 0 m, is {self.datum_depth}: {reason}"
+            faults.insert(0, Fault("half_space", "datum_depth", message))
+        if faults:
+            raise BadInput(faults)
+
+    @property
+    def length(self) -> float:
+        """The datum's depth, m."""
+        return self.datum_depth
+
+    def points(self, half_width: float) -> float:
+        """As many for all."""
+        return HALF_PLANE_POINTS
+
+    def smooth(self, y: Array, half_width: float, refinement: float) -> Array:
+        """What the datum moves by, (n,)."""
+        far = 1.0 + (half_width / self.datum_depth * y) ** 2
+        return 0.5 * np.log(far) - 0.5 / ((1.0 - self.nu) * far) - log(half_width / self.datum_depth)

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault, NotReached
-from lumped.load_curves.base import GAUSS_POINTS, KnownTogether, check_below, elastic_faults
+from lumped.load_curves.base import GAUSS_POINTS, LoadCurve, check_below, elastic_faults
 from lumped.load_curves.plane_contact import Collocation, Grown, collocation, folded
 from lumped.load_curves.tabulated import ACCURACY, certified, evaluate
 from lumped.numbers import Array, Real, gauss
@@ -37,17 +37,23 @@ TAIL, LEAST_ORDER = 42.0, 12
 
 
 @dataclass(frozen=True)
-class RingContact:
+class RodInRing(LoadCurve):
     """Exact arcs: with D = clearance + depth the overlap is D cos(theta) + sqrt(R^2 - D^2 sin^2(theta)) - inner radius.
 
-    Its radial pressure is found from the Fourier series of the annulus, whose outer surface is fixed. Lengths in m,
-    `nu` in (-1, 0.5], the clearance inner_radius - radius at least 1e-4 thickness. Raises BadInput.
+    Its radial pressure is found from the Fourier series of the annulus, whose outer surface is fixed. F is the
+    component along the motion, the contact radius the half-length of the inner arc that is touched. Lengths in m, `nu`
+    in (-1, 0.5], the clearance inner_radius - radius at least 1e-4 thickness.
+
+    While the cylinder's arc is the exact one, F is not the slope of a stored energy: the motion turns the overlap a
+    little further than cos(theta). Depths stay below thickness and radius; below 1e-17 of them all is 0.
+    Raises BadInput, or NotReached where two resolutions differ by more than 1e-8 or the contact goes all the way round.
     """
 
     radius: float
     inner_radius: float
     thickness: float
     nu: float
+    accuracy: ClassVar[float] = ACCURACY
 
     def __post_init__(self) -> None:
         faults = elastic_faults("ring", self.nu, radius=self.radius, thickness=self.thickness)
@@ -71,6 +77,56 @@ class RingContact:
     def check_depth(self, depth: ArrayLike) -> None:
         """Raises BadInput where a depth reaches the limit."""
         check_below(depth, self.depth_limit, "thickness and radius,")
+
+    def contact_radius(self, depth: ArrayLike) -> Real:
+        """Half-length of the inner arc touched, m."""
+        return self._at(depth)[0]
+
+    def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
+        """F/E* per unit length, m, and its slope at a depth."""
+        _, force, slope, _ = self._at(depth)
+        return force, slope
+
+    def depth(self, contact_radius: ArrayLike) -> Real:
+        """The least depth with this half-length of arc, m, from the equation itself; infinite where none has it."""
+        half_length = np.asarray(contact_radius, dtype=float)
+        depths = [self.depth_at(float(b) / self.inner_radius) if b > 0.0 else 0.0 for b in half_length.ravel()]
+        return np.reshape(depths, half_length.shape)
+
+    def depth_slope(self, contact_radius: ArrayLike) -> Real:
+        """d depth / d half-length of arc."""
+        depth = np.asarray(self.depth(contact_radius))
+        half_length, _, _, exponent = self._at(depth)
+        product = half_length * exponent
+        return np.divide(depth, product, out=np.zeros_like(depth), where=product > 0.0)
+
+    def pressure(self, radius: ArrayLike, contact_radius: float) -> Array:
+        """p/E* at distances along the inner arc, from the equation itself."""
+        return self.pressure_at(radius, float(self.depth(contact_radius)))
+
+    def pressure_at(self, radius: ArrayLike, depth: float) -> Array:
+        """p/E* at distances along the inner arc and a depth."""
+        self.check_depth(depth)
+        if depth <= 0.0:
+            return np.zeros_like(np.asarray(radius, dtype=float))
+        here = self.pressed(depth, 1.0)
+        return here.collocation.at(here.q, np.asarray(radius, dtype=float) / here.half_width)
+
+    def bending(self, depth: float) -> float:
+        """By d2 overlap/dD2 = -R^2 sin^2(theta) (R^2 - D^2 sin^2(theta))^(-3/2), 1/m per unit length."""
+        angle, distance = self._half_angle(depth, 1.0), self.clearance + depth
+        rule, matrix = self._equation(angle, 1.0)
+        theta = angle * rule.nodes
+        square = (self.radius * np.sin(theta)) ** 2
+        bend = -square * (self.radius**2 - (distance * np.sin(theta)) ** 2) ** -1.5
+        pressed = np.asarray(np.linalg.solve(matrix, bend), dtype=float)
+        return self.inner_radius * angle * float(rule.total(pressed * np.cos(theta)))
+
+    def energy(self, depth: ArrayLike) -> Array:
+        """Work of indentation int_0^depth F d depth."""
+        d = np.maximum(np.asarray(depth, dtype=float), 0.0)
+        nodes, weights = gauss(GAUSS_POINTS)
+        return np.asarray(d * (self.force(d[..., None] * nodes**2) @ (2.0 * nodes * weights)))
 
     def pressed(self, depth: float, refinement: float) -> Grown:
         """The contact at one depth, m; its force is the component along the motion. Raises NotReached."""
@@ -99,6 +155,19 @@ class RingContact:
                 return depth
             depth += step
         raise NotReached(f"the depth in the ring at a half-angle of {angle:g} was not found in {NEWTON_STEPS} steps")
+
+    def _at(self, depth: ArrayLike) -> Array:
+        """Half-length, F/E*, its slope and dln(half-length)/dln(depth), shape (4, ...); all 0 without depth."""
+        self.check_depth(depth)
+        d = np.asarray(depth, dtype=float)
+        place = np.log(d / self.depth_limit, out=np.full(d.shape, -np.inf), where=d > 0.0).ravel()
+        answer = np.zeros((4, d.size))
+        for index in np.unique(np.searchsorted(-EDGES, -place)):
+            if 0 < index < EDGES.size:
+                here = (place < EDGES[index - 1]) & (place >= EDGES[index])
+                values, slopes = evaluate(_panel(self, index)[None], EDGES[[index, index - 1]], place[here])
+                answer[:, here] = np.concatenate([np.exp(values), slopes[:1]])
+        return answer.reshape(4, *d.shape)
 
     def _half_angle(self, depth: float, refinement: float) -> float:
         """The half-angle at whose ends the pressure vanishes: searched with few points, found by a secant with all."""
@@ -152,81 +221,6 @@ class RingContact:
         return np.asarray(2.0 * np.sin(0.5 * theta) ** 2 + arc)
 
 
-@dataclass(frozen=True)
-class RodInRing(RingContact, KnownTogether):
-    """F is the component along the motion, the contact radius the half-length of the inner arc that is touched.
-
-    While the cylinder's arc is the exact one, F is not the slope of a stored energy: the motion turns the overlap a
-    little further than cos(theta). Depths stay below thickness and radius; below 1e-17 of them all is 0.
-    Raises BadInput, or NotReached where two resolutions differ by more than 1e-8 or the contact goes all the way round.
-    """
-
-    accuracy: ClassVar[float] = ACCURACY
-
-    def contact_radius(self, depth: ArrayLike) -> Real:
-        """Half-length of the inner arc touched, m."""
-        return self._at(depth)[0]
-
-    def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
-        """F/E* per unit length, m, and its slope at a depth."""
-        _, force, slope, _ = self._at(depth)
-        return force, slope
-
-    def depth(self, contact_radius: ArrayLike) -> Real:
-        """The least depth with this half-length of arc, m, from the equation itself; infinite where none has it."""
-        half_length = np.asarray(contact_radius, dtype=float)
-        depths = [self.depth_at(float(b) / self.inner_radius) if b > 0.0 else 0.0 for b in half_length.ravel()]
-        return np.reshape(depths, half_length.shape)
-
-    def depth_slope(self, contact_radius: ArrayLike) -> Real:
-        """d depth / d half-length of arc."""
-        depth = np.asarray(self.depth(contact_radius))
-        half_length, _, _, exponent = self._at(depth)
-        product = half_length * exponent
-        return np.divide(depth, product, out=np.zeros_like(depth), where=product > 0.0)
-
-    def pressure(self, radius: ArrayLike, contact_radius: float) -> Array:
-        """p/E* at distances along the inner arc, from the equation itself."""
-        return self.pressure_at(radius, float(self.depth(contact_radius)))
-
-    def pressure_at(self, radius: ArrayLike, depth: float) -> Array:
-        """p/E* at distances along the inner arc and a depth."""
-        self.check_depth(depth)
-        if depth <= 0.0:
-            return np.zeros_like(np.asarray(radius, dtype=float))
-        here = self.pressed(depth, 1.0)
-        return here.collocation.at(here.q, np.asarray(radius, dtype=float) / here.half_width)
-
-    def bending(self, depth: float) -> float:
-        """By d2 overlap/dD2 = -R^2 sin^2(theta) (R^2 - D^2 sin^2(theta))^(-3/2), 1/m per unit length."""
-        angle, distance = self._half_angle(depth, 1.0), self.clearance + depth
-        rule, matrix = self._equation(angle, 1.0)
-        theta = angle * rule.nodes
-        square = (self.radius * np.sin(theta)) ** 2
-        bend = -square * (self.radius**2 - (distance * np.sin(theta)) ** 2) ** -1.5
-        pressed = np.asarray(np.linalg.solve(matrix, bend), dtype=float)
-        return self.inner_radius * angle * float(rule.total(pressed * np.cos(theta)))
-
-    def energy(self, depth: ArrayLike) -> Array:
-        """Work of indentation int_0^depth F d depth."""
-        d = np.maximum(np.asarray(depth, dtype=float), 0.0)
-        nodes, weights = gauss(GAUSS_POINTS)
-        return np.asarray(d * (self.force(d[..., None] * nodes**2) @ (2.0 * nodes * weights)))
-
-    def _at(self, depth: ArrayLike) -> Array:
-        """Half-length, F/E*, its slope and dln(half-length)/dln(depth), shape (4, ...); all 0 without depth."""
-        self.check_depth(depth)
-        d = np.asarray(depth, dtype=float)
-        place = np.log(d / self.depth_limit, out=np.full(d.shape, -np.inf), where=d > 0.0).ravel()
-        answer = np.zeros((4, d.size))
-        for index in np.unique(np.searchsorted(-EDGES, -place)):
-            if 0 < index < EDGES.size:
-                here = (place < EDGES[index - 1]) & (place >= EDGES[index])
-                values, slopes = evaluate(_panel(self, index)[None], EDGES[[index, index - 1]], place[here])
-                answer[:, here] = np.concatenate([np.exp(values), slopes[:1]])
-        return answer.reshape(4, *d.shape)
-
-
 @lru_cache(maxsize=256)
 def _panel(ring: RodInRing, index: int) -> Array:
     """Logarithms of half-length, F/E* and dF/d depth over ln(depth/limit), shape (POINTS, 2, 3), certified."""
@@ -260,7 +254,7 @@ def ring_compliance(nu: float, ratio: float, rule: Collocation, angle: float) ->
 
 
 def _side(nu: float) -> float:
-    """Weight of 1/(n^2-1) in c_n."""
+    """m, the weight of 1/(n^2-1) in c_n."""
     return (1.0 - 2.0 * nu) / (1.0 - nu)
 
 
@@ -294,8 +288,8 @@ def compliances(nu: float, ratio: float) -> Array:
 
 
 def hole(nu: float, orders: Array) -> Array:
-    """c_n = (2n + (1-2nu)/(1-nu))/(n^2-1) of a hole in an infinite body, n >= 2."""
-    return np.asarray((2.0 * orders + (1.0 - 2.0 * nu) / (1.0 - nu)) / (orders**2 - 1.0))
+    """c_n = (2n + m)/(n^2-1), m = (1-2nu)/(1-nu), of a hole in an infinite body, n >= 2."""
+    return np.asarray((2.0 * orders + _side(nu)) / (orders**2 - 1.0))
 
 
 def _uniform(nu: float, ratio: float) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault
-from lumped.load_curves.base import KnownTogether
+from lumped.load_curves.base import LoadCurve
 from lumped.numbers import Array, Real
 
 BISECTIONS = 120  # work: halvings of the depth's logarithm, whose 1400 they take far below rounding
@@ -16,7 +16,7 @@ TINY = 1e-300  # safety: m, in place of zero where a logarithm is taken
 
 
 @dataclass(frozen=True)
-class SampledCurve(KnownTogether):
+class SampledCurve(LoadCurve):
     """Depths, m, ascending, with forces F/E* and contact radii, m: at least two of each.
 
     Between them and beyond, the logarithms of force and radius are cubics and straight lines in that of the depth.

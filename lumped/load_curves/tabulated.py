@@ -17,7 +17,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
 from lumped.errors import NotReached
-from lumped.load_curves.base import GAUSS_POINTS, KnownTogether
+from lumped.load_curves.base import GAUSS_POINTS, LoadCurve
 from lumped.numbers import Array, Real, gauss
 
 POINTS = 14  # Chebyshev points of a panel
@@ -91,7 +91,7 @@ class TabulatedState(NamedTuple):
     stiffness: Real
 
 
-class TabulatedCurve(KnownTogether):
+class TabulatedCurve(LoadCurve):
     """A curve that is solved at single contact radii and tabulated between, to a relative accuracy of 1e-8.
 
     Raises NotReached when two resolutions of the equation differ by more, and for depths beyond the last panel.
@@ -103,11 +103,6 @@ class TabulatedCurve(KnownTogether):
     @abstractmethod
     def edges(self) -> tuple[float, ...]:
         """Contact radii between which the panels lie, ascending, the last the largest one served, m."""
-
-    @property
-    def breaks(self) -> tuple[float, ...]:
-        """Edges beyond which the functions start anew as a root does, m: where the face bends."""
-        return ()
 
     @abstractmethod
     def sample(self, contact_radius: float, refinement: float) -> Array:
@@ -123,8 +118,7 @@ class TabulatedCurve(KnownTogether):
         panels = int(np.searchsorted(self.edges, a.max(initial=0.0)))
         if panels > len(self.edges) - 1:
             raise NotReached(f"the load curve serves contact radii up to {self.edges[-1]:g} m, not {a.max():g}")
-        flat = TabulatedState(*(np.asarray(part) for part in self._at(a.ravel(), max(panels, 1))))
-        return TabulatedState(*(part.reshape(a.shape) for part in flat))
+        return TabulatedState(*(np.reshape(part, a.shape) for part in self._at(a.ravel(), max(panels, 1))))
 
     def depth(self, contact_radius: ArrayLike) -> Real:
         """Depth at a contact radius, m."""

@@ -6,10 +6,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault
-from lumped.materials.relaxation import Relaxation
 from lumped.numbers import Array, freeze_columns
 from lumped.schema.csv_file import read_columns, read_header
 
@@ -49,12 +48,6 @@ class DynamicModuli:
         except BadInput as bad:
             called = dict(zip(("omega", "storage", "loss"), columns, strict=True))
             raise BadInput(replace(fault, key=called.get(fault.key, "")) for fault in bad.faults) from None
-
-    @classmethod
-    def of(cls, relaxation: Relaxation, omega: ArrayLike) -> DynamicModuli:
-        """The moduli of a material at these angular frequencies, 1/s."""
-        modulus = relaxation.operational(1j * np.asarray(omega, dtype=float))
-        return cls(np.asarray(omega, dtype=float), modulus.real, modulus.imag)
 
     @property
     def modulus(self) -> NDArray[np.complex128]:

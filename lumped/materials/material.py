@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar
 
 from lumped.errors import BadInput, Fault
 from lumped.materials.relaxation import Relaxation
@@ -52,11 +52,6 @@ class Material(Record):
     wlf: Annotated[tuple[float, ...] | None, Key(Numbers(Number(0.0, 1e6), 2), "C1, and C2 in K, of the shift")] = None
     activation_energy: Annotated[float | None, Key(Number(0.0, 1e8, "J/mol"), "of Arrhenius' shift")] = None
     name: ClassVar[str] = "material"
-
-    @classmethod
-    def of_reference(cls, network: Relaxation, **values: Any) -> Material:
-        """The material of a network at its reference temperature, with the other fields. Raises BadInput."""
-        return cls(network, **values).with_reference(network)
 
     def with_reference(self, network: Relaxation) -> Material:
         """The same with another network, as it is at the reference temperature."""

@@ -1,4 +1,4 @@
-"""J2 plasticity with linear isotropic hardening at small strain: the radial return of a step, and the first yield.
+"""J2 plasticity with linear isotropic hardening at small strain: the radial return of a step.
 
 Strains and stresses of a plane of revolution in components (rr, rz, zz, tt), tensor components, symmetric.
 """
@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 
@@ -19,7 +18,6 @@ SYMMETRIC = np.array([[1.0, 0, 0, 0, 0], [0, 0.5, 0.5, 0, 0], [0, 0, 0, 1.0, 0],
 GRADIENT = [0, 1, 1, 2, 3]  # components of a symmetric tensor by those of a gradient
 OFTEN = np.array([1.0, 2.0, 1.0, 1.0])
 VOLUME = np.array([1.0, 0.0, 0.0, 1.0, 1.0])  # of a gradient: its trace
-DEEPEST = 2.0  # contact radii: below them the axis' shear stress only falls
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,18 +97,3 @@ class Yielding:
         fixed = self.bulk * np.outer(VOLUME, VOLUME)
         tangent += fixed.reshape(5, 5, *[1] * kept.ndim)
         return np.asarray(tangent)
-
-
-@cache
-def first_yield(poisson: float) -> tuple[float, float]:
-    """C = p_0/Y of Hertz' contact as it begins to yield, and at which depth under the axis, in contact radii.
-
-    Of the exact stresses on the axis, Johnson, Contact Mechanics (1985), (3.45); 1.613 and 0.48 at nu = 0.3.
-    """
-    depth = np.linspace(0.0, DEEPEST, 20_001)
-    safe = np.maximum(depth, 1e-12)
-    side = 1.0 / (1.0 + depth**2)
-    radial = -(1.0 + poisson) * (1.0 - depth * np.arctan(1.0 / safe)) + 0.5 * side
-    shear = np.abs(radial + side)
-    deepest = int(shear.argmax())
-    return 1.0 / float(shear[deepest]), float(depth[deepest])

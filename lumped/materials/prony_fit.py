@@ -9,8 +9,8 @@ spectrum that comes closest has non-negative weights at times found from the dat
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -83,9 +83,7 @@ def of_operational(
     density, best = FEWEST * math.log(10.0) * math.log(2.0 / tolerance) / math.pi**2, math.inf
     for _ in range(ROUNDS):
         candidates = _candidates(*window, BEYOND_WINDOW, density)
-        spectrum = fitted(
-            AskedResponse(Decay(times), modulus - (relaxed or 0.0), modulus), candidates, ENOUGH * tolerance
-        )
+        spectrum = fitted(Decay(modulus - (relaxed or 0.0), modulus, times), candidates, ENOUGH * tolerance)
         series = _relaxation(spectrum, viscosity, relaxed, last=window[1] / (LAST * tolerance))
         deviation = RIPPLE * np.abs(series(checked) / truth - 1.0) + unsure / truth
         best = min(best, float(deviation.max()))
@@ -105,14 +103,11 @@ def of_samples(times: ArrayLike, moduli: ArrayLike) -> PronyFit:
     t, values = np.asarray(times, dtype=float), np.asarray(moduli, dtype=float)
     inner = t[(t > 0.0) & np.isfinite(t)]
     if t.ndim != 1 or t.shape != values.shape or inner.size < 2 or np.isnan(t).any() or t.min() < 0.0:
-        raise BadInput(
-            Fault("samples", "times", "accepted: one-dimensional, as many as moduli, two or more above zero")
-        )
+        reason = "accepted: one-dimensional, as many as moduli, two or more above zero"
+        raise BadInput(Fault("samples", "times", reason))
     if not np.all(np.isfinite(values)) or np.any(values <= 0.0):
         raise BadInput(Fault("samples", "moduli", "accepted: finite values above zero, in Pa"))
-    spectrum = fitted(
-        AskedResponse(Decay(t), values, values), _candidates(inner.min(), inner.max(), BEYOND_DATA, DENSE)
-    )
+    spectrum = fitted(Decay(values, values, t), _candidates(inner.min(), inner.max(), BEYOND_DATA, DENSE))
     return _told(_relaxation(spectrum), np.abs(spectrum.residual), (inner.min(), inner.max()))
 
 
@@ -124,7 +119,7 @@ def of_dynamic(data: DynamicModuli, *, viscous: bool = False) -> PronyFit:
     """
     magnitude = np.tile(np.abs(data.modulus), 2)
     shortest, longest = 1.0 / float(data.omega.max()), 1.0 / float(data.omega.min())
-    target = AskedResponse(Oscillation(data.omega, viscous), stacked(data.modulus), magnitude)
+    target = Oscillation(stacked(data.modulus), magnitude, data.omega, viscous)
     spectrum = fitted(target, _candidates(shortest, longest, BEYOND_DATA, DENSE))
     series = _relaxation(spectrum, *spectrum.steady[1:].tolist())
     return _told(series, np.hypot(*np.split(spectrum.residual, 2)), (shortest, longest))
@@ -139,9 +134,8 @@ def _check(window: tuple[float, float], tolerance: float, relaxed: float | None,
         faults.append(Fault("prony fit", "tolerance", f"accepted: from {LEAST_TOLERANCE:g} to below 1"))
     for name, limit in (("relaxed", relaxed), ("glassy", glassy)):
         if limit is not None and not 0.0 < limit < math.inf:
-            faults.append(
-                Fault("prony fit", name, "accepted: a finite modulus above zero, in Pa; leave it out otherwise")
-            )
+            reason = "accepted: a finite modulus above zero, in Pa; leave it out otherwise"
+            faults.append(Fault("prony fit", name, reason))
     if faults:
         raise BadInput(faults)
 
@@ -202,27 +196,28 @@ def _outside(
     return float(before), float(after)
 
 
-class Response(Protocol):
-    """What is measured of a Prony series, as rows linear in its moduli."""
+@dataclass(frozen=True, eq=False)
+class Response(ABC):
+    """What is measured of a Prony series, as rows linear in its moduli, where it should be `values`, (m,).
+
+    Each residual is divided by its `scale`, (m,).
+    """
+
+    values: Array
+    scale: Array
 
     @property
+    @abstractmethod
     def steady(self) -> Array:
         """Rows of a unit equilibrium modulus, and of a unit viscosity where it is sought, (m, 1) or (m, 2)."""
 
+    @abstractmethod
     def of(self, taus: Array) -> Array:
         """Rows of terms of unit modulus and these times, (m, n)."""
 
+    @abstractmethod
     def slope(self, taus: Array) -> Array:
         """Derivative of `of` by ln tau, (m, n)."""
-
-
-@dataclass(frozen=True, eq=False)
-class AskedResponse:
-    """What the response should be, `values` (m,), and what each residual is divided by, `scale` (m,)."""
-
-    response: Response
-    values: Array
-    scale: Array
 
     @property
     def wanted(self) -> Array:
@@ -231,15 +226,11 @@ class AskedResponse:
 
     def rows(self, taus: Array) -> Array:
         """Steady columns, then those of terms with these times, over scale, (m, 1 + n) or (m, 2 + n)."""
-        return np.asarray(np.hstack([self.response.steady, self.response.of(taus)]) / self.scale[:, None])
-
-    def slope(self, taus: Array) -> Array:
-        """Derivative of the columns of the terms by ln tau, (m, n)."""
-        return np.asarray(self.response.slope(taus) / self.scale[:, None])
+        return np.asarray(np.hstack([self.steady, self.of(taus)]) / self.scale[:, None])
 
 
 @dataclass(frozen=True, eq=False)
-class Decay:
+class Decay(Response):
     """E(t) at `times`, s, shape (m,), of which the first may be 0 and the last infinite."""
 
     times: Array
@@ -261,7 +252,7 @@ class Decay:
 
 
 @dataclass(frozen=True, eq=False)
-class Oscillation:
+class Oscillation(Response):
     """Storage modulus and, below it, loss modulus at angular frequencies `omega`, 1/s, (m,): 2m rows."""
 
     omega: Array
@@ -304,7 +295,7 @@ class Spectrum:
         return float(np.sqrt(np.mean(self.residual**2)))
 
 
-def fitted(target: AskedResponse, candidates: Array, enough: float = EXACT) -> Spectrum:
+def fitted(target: Response, candidates: Array, enough: float = EXACT) -> Spectrum:
     """The spectrum whose response comes closest to the target, from candidate times, shape (n,), ascending.
 
     Non-negative least squares on the candidate times, then on times which have moved to the least residual: of
@@ -320,7 +311,7 @@ def fitted(target: AskedResponse, candidates: Array, enough: float = EXACT) -> S
     return _pruned(target, fewest, enough)
 
 
-def _weighed(target: AskedResponse, taus: Array) -> Spectrum:
+def _weighed(target: Response, taus: Array) -> Spectrum:
     """Non-negative least squares (Lawson and Hanson 1974, doi 10.1137/1.9781611971217) at given times."""
     from scipy.optimize import nnls
 
@@ -347,14 +338,14 @@ def _merged(spectrum: Spectrum, candidates: Array) -> Array:
     return np.asarray(np.exp(logs))
 
 
-def _moved(target: AskedResponse, start: Array, candidates: Array) -> Array:
+def _moved(target: Response, start: Array, candidates: Array) -> Array:
     """The times near those of `start` with the least residual, moduli eliminated; `start` if the rows are too few.
 
     Variable projection with Kaufman's gradient (Golub and Pereyra 2003, doi 10.1088/0266-5611/19/2/201).
     """
     from scipy.optimize import least_squares
 
-    wanted, steady = target.wanted, target.response.steady.shape[1]
+    wanted, steady = target.wanted, target.steady.shape[1]
     if start.size == 0 or wanted.size < 2 * start.size + steady:
         return start
 
@@ -368,7 +359,7 @@ def _moved(target: AskedResponse, start: Array, candidates: Array) -> Array:
     def gradient(logs: Array) -> Array:
         q, taus = basis(logs), np.exp(logs)
         weights = np.linalg.lstsq(target.rows(taus), wanted)[0][steady:]
-        turned = target.slope(taus) * weights
+        turned = target.slope(taus) / target.scale[:, None] * weights
         return np.asarray(turned - q @ (q.T @ turned))
 
     with np.errstate(all="ignore"):  # a step too far overflows, and is then refused
@@ -379,7 +370,7 @@ def _moved(target: AskedResponse, start: Array, candidates: Array) -> Array:
         return np.clip(np.exp(found.x), candidates[0], candidates[-1])
 
 
-def _pruned(target: AskedResponse, spectrum: Spectrum, enough: float) -> Spectrum:
+def _pruned(target: Response, spectrum: Spectrum, enough: float) -> Spectrum:
     """Without terms that do not show, and in order of time."""
     shown = np.abs(target.rows(spectrum.taus)[:, spectrum.steady.size :] * spectrum.weights).max(axis=0, initial=0.0)
     kept = np.flatnonzero(shown > NEGLIGIBLE * max(enough, np.abs(spectrum.residual).max()))

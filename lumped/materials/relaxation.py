@@ -166,6 +166,11 @@ class Creep:
     times: tuple[float, ...] = ()
     fluidity: float = 0.0
 
+    def __add__(self, other: Creep) -> Creep:
+        """Of two bodies under one load."""
+        compliances, times = self.compliances + other.compliances, self.times + other.times
+        return Creep(self.instantaneous + other.instantaneous, compliances, times, self.fluidity + other.fluidity)
+
     def __call__(self, time: ArrayLike) -> Array:
         """J(t) for t >= 0, same shape as `time`, 1/Pa."""
         t = np.asarray(time, dtype=float)

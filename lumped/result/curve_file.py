@@ -44,9 +44,9 @@ class Dimension:
     def place(self, cells: Sequence[str]) -> ColumnOfCurve | None:
         """The column that a header calls so, by its name, or by a unit that no other has. Raises ValueError of two."""
         found = [self._read(place, cell) for place, cell in enumerate(cells)]
-        for told in (self._plain, self._named):
-            if columns := [column for column in found if told(column)]:
-                return columns[0]
+        plain = [column for column in found if column.header == self.plain]
+        if called := plain or [column for column in found if column.name in self.names]:
+            return called[0]
         measured = [column for column in found if column.unit]
         if len(measured) > 1:
             raise ValueError(", ".join(column.header for column in measured))
@@ -61,12 +61,6 @@ class Dimension:
         unit = next((known for known in self.units if words and words[-1] == known), "")
         name = " ".join(words[:-1] if unit and len(words) > 1 else words).lower()
         return ColumnOfCurve(place, cell.strip(" #"), name, unit, self.units.get(unit, 1.0))
-
-    def _plain(self, column: ColumnOfCurve) -> bool:
-        return column.header == self.plain
-
-    def _named(self, column: ColumnOfCurve) -> bool:
-        return column.name in self.names
 
 
 class ColumnOfCurve(NamedTuple):

@@ -315,9 +315,10 @@ def _impulse(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
     low, high = (least - weight) / momentum, (max(least, most) - weight) / momentum
     spare = SPARE + 3.0 * chance / momentum
     if low > 2.0 + spare:
-        yield Finding(_too_large(pulse, scene, low))
+        yield Finding(_unit_of(pulse, scene, low) or _too_large(low))
     elif high < 1.0 - spare and pulse.ended and not scene.model.inertia:
-        yield Finding(_too_small(pulse, scene, high))
+        cure = "check mass, velocity and calibration, and whether rows were cut off"
+        yield Finding(_unit_of(pulse, scene, high) or f"{_restitution(high)} < 0; cure: {cure}")
     elif low > 2.0 + NEARLY or (high < 1.0 - NEARLY and pulse.ended and not scene.model.inertia):
         yield Finding(f"{_restitution(high)}, a little outside 0 to 1; cure: check mass and velocity", False)
 
@@ -326,23 +327,18 @@ def _restitution(ratio: float) -> str:
     return f"the impulse is {ratio:.4g} times mass times velocity, a restitution of {ratio - 1.0:.3g}"
 
 
-def _too_large(pulse: MeasuredPulse, scene: Scene, ratio: float) -> str:
-    if unit := _unit_of(pulse, scene, ratio):
-        return unit
+def _too_large(ratio: float) -> str:
     cure = "check mass, velocity and the calibration"
     if ratio < 4.0 * (1.0 + SPARE):
         cure = f"is it doubled, as two sensors added, or half of the mass or velocity given? else {cure}"
     return f"{_restitution(ratio)} > 1; cure: {cure}"
 
 
-def _too_small(pulse: MeasuredPulse, scene: Scene, ratio: float) -> str:
-    if unit := _unit_of(pulse, scene, ratio):
-        return unit
-    return f"{_restitution(ratio)} < 0; cure: check mass, velocity and calibration, and whether rows were cut off"
-
-
 def _unit_of(pulse: MeasuredPulse, scene: Scene, ratio: float) -> str:
-    """Units mistaken for others, of the force, of the time, or of both: the contact's duration tells which."""
+    """Units mistaken for others, of the force, of the time, or of both: the contact's duration tells which.
+
+    Empty where none are.
+    """
     span = _contact_times(scene)
     factors, most = (1.0, *THOUSANDS), 2.0 * (1.0 + SPARE)
     pairs = [(t, f) for t in factors for f in factors if t * f != 1.0 and 1.0 - SPARE <= ratio / (t * f) <= most]

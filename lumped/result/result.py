@@ -14,8 +14,7 @@ from typing import ClassVar
 from lumped.numbers import Array
 from lumped.result.folder import RECORD, publish
 from lumped.result.history import History
-from lumped.scene.geometry import contact_modulus, relaxed_impact
-from lumped.scene.indenter import Indenter
+from lumped.scene.geometry import Geometry, relaxed_impact
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
 from lumped.schema import Table
@@ -147,13 +146,8 @@ class LedgerEntry:
             return NO_KEY
         return f"to include it: --set {self.setting}"
 
-    @property
-    def sentence(self) -> str:
-        """What is left out, by how much that changes the peak force, and how to include it."""
-        return self.told_of(PEAK_FORCE)
-
     def told_of(self, force: str) -> str:
-        """The same of a force called so."""
+        """What is left out, by how much that changes a force called so, and how to include it."""
         left = "is left out" if self.treated in LEFT_OUT else f"is taken as {self.treated}"
         size = f"it may change the {force} by {percent(self.size)}" if self.known else "by how much is unknown"
         return f"{self.effect} {left}; {size}; {self.cure}"
@@ -259,8 +253,7 @@ class Result:
             "provenance": self.provenance,
             "timing": self.timing,
         }
-        found: Table = plain(content)
-        return found
+        return dict(plain(content))
 
     def write(self, directory: Path) -> None:
         """Make history.csv, result.json and, where it is told, recovery.csv the content of a folder of results.
@@ -382,15 +375,14 @@ def groups(scene: Scene, values: Mapping[str, float | None], history: History) -
     }
 
 
-def groups_at_rest(indenter: Indenter, contact_radius: Array) -> Table:
+def groups_at_rest(geometry: Geometry, contact_radius: Array) -> Table:
     """Those of a slow indentation, which knows no time: E_i/E_inf, nu, a/R and h/a with the largest of its radii, m."""
-    modulus = contact_modulus(indenter.shape, indenter.material, indenter.striker_material)
-    largest = float(contact_radius.max())
+    modulus, largest = geometry.contact_modulus, float(contact_radius.max())
     return {
         "E_i/E_inf": _over(modulus.instantaneous, modulus.relaxed),
-        "nu": indenter.material.nu,
-        "a/R": _over(largest, indenter.shape.tip_radius),
-        "h/a": _over(indenter.target.body_depth, largest),
+        "nu": geometry.material.nu,
+        "a/R": _over(largest, geometry.shape.tip_radius),
+        "h/a": _over(geometry.target.body_depth, largest),
     }
 
 

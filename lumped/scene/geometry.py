@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from lumped.errors import BadInput, Fault
 from lumped.load_curves import HertzImpact
-from lumped.materials import Creep, Material, Relaxation
+from lumped.materials import Material, Relaxation
 from lumped.materials.energies.base import DEFAULT, ENERGIES, energy_of
 from lumped.scene.tables import Model
 from lumped.schema import Table
@@ -45,8 +45,7 @@ class Geometry:
     @property
     def surface_remembers(self) -> bool:
         """Whether elastic bodies and E*(t) tell all: of a body with lengths, where nu stays or strain is uniform."""
-        materials = [self.material] if self.striker_material is None else [self.material, self.striker_material]
-        steady = all(one.constant == "poisson" or one.young.is_elastic for one in materials)
+        steady = all(one.constant == "poisson" or one.young.is_elastic for _, one in self.yielding)
         uniform = isinstance(self.shape, Block) and self.shape.uniform
         return steady or uniform or not self.target.has_length
 
@@ -62,24 +61,38 @@ class Geometry:
         alike = [Material(Relaxation(modulus), one.nu) for modulus, one in zip(moduli, bodies, strict=True)]
         return replace(self, material=alike[0], striker_material=None if len(alike) == 1 else alike[1])
 
+    @property
+    def contact_modulus(self) -> Relaxation:
+        """The modulus E*(t) which the force is in proportion to, Pa: of one body, or of both.
 
-def contact_modulus(shape: Shape, material: Material, striker: Material | None) -> Relaxation:
-    """The modulus E*(t) which the force is in proportion to, Pa: of one body, or of both.
+        Compliances add, 1/E*(s) = 1/E1*(s) + 1/E2*(s), and the sum is inverted as a whole.
+        """
+        own = self.shape.modulus(self.material)
+        if self.striker_material is None:
+            return own
+        return (own.creep() + self.shape.modulus(self.striker_material).creep()).relaxation()
 
-    Compliances add, 1/E*(s) = 1/E1*(s) + 1/E2*(s), and the sum is inverted as a whole.
-    """
-    own = shape.modulus(material)
-    return own if striker is None else _together(own.creep(), shape.modulus(striker).creep()).relaxation()
+    def check_striker(self, source: str, inertia: bool) -> None:
+        """Raise BadInput for a striker which the target is not for, or whose material is one too many."""
+        self.target.check_striker(source, self.shape)
+        refused = [] if self.striker_material is None else self.target.yielding_faults(source, self.shape, inertia)
+        if refused:
+            raise BadInput(refused)
 
+    def places(self, deep: str) -> dict[str, str]:
+        """Where in a scene file stands what a part refuses; `deep`: what a depth comes from."""
+        yielding = "target" if self.target.deformable else "striker"
+        own = {"material": f"{yielding}.material", "relaxation": f"{yielding}.material", "numerics": "numerics"}
+        return {**own, "depth": deep, self.target.name: "target", self.shape.name: "striker"}
 
-def _together(first: Creep, second: Creep) -> Creep:
-    """Two compliances under one load."""
-    return Creep(
-        first.instantaneous + second.instantaneous,
-        first.compliances + second.compliances,
-        first.times + second.times,
-        first.fluidity + second.fluidity,
-    )
+    def tables(self) -> tuple[Table, Table]:
+        """The striker's and the target's table of a scene file that gives them back."""
+        own, held = self.shape.to_dict(), self.target.to_dict()
+        if self.striking is not None:
+            own["material"] = self.striking.to_dict()
+        if self.target.deformable:
+            held["material"] = self.material.to_dict()
+        return own, held
 
 
 def dashpot_as_spring(shape: Shape, viscosity: float, mass: float, velocity: float) -> float:
@@ -115,13 +128,6 @@ def absurd_depth(shape: Shape, modulus: Relaxation, mass: float, velocity: float
         f"the striker sinks in by {impact.depth:.3g} m, deeper than its radius: no small-displacement theory "
         "holds; accepted: a lower velocity or mass, or a stiffer material: are its moduli in Pa?"
     )
-
-
-def check_striker_material(source: str, target: Target, shape: Shape, striker: Material | None, inertia: bool) -> None:
-    """Raise BadInput for a second material on a target whose striker is rigid, or on a rigid target."""
-    faults = [] if striker is None else target.yielding_faults(source, shape, inertia)
-    if faults:
-        raise BadInput(faults)
 
 
 def flying_faults(source: str, geometry: Geometry, mass: float, target_mass: float | None) -> list[Fault]:
@@ -166,24 +172,17 @@ def plasticity_faults(source: str, model: Model, geometry: Geometry | None, impa
         return []
     if geometry is None:
         return [Fault(source, "model.plasticity", "true: a law of its own has no material; accepted: false")]
-    material, state, shapes = geometry.material, "with model.plasticity", ", ".join(YIELDING_UNDER)
+    shape, target, material = geometry.shape, geometry.target, geometry.material
+    elastic, state, shapes = material.young.is_elastic, "with model.plasticity", ", ".join(YIELDING_UNDER)
     wrong = [
         (material.yield_strength is None, "target.material.yield_strength", f"missing, in Pa; {state} it is needed"),
-        (
-            not material.young.is_elastic,
-            "target.material.law",
-            f"no viscosity {state} in this version; accepted: elastic",
-        ),
+        (not elastic, "target.material.law", f"no viscosity {state} in this version; accepted: elastic"),
         (model.inertia, "model.inertia", f"true: no waves {state} in this version; accepted: false"),
         (model.finite, "model.kinematics", f"finite: no large strains {state} in this version; accepted: small"),
         (impacts > 1, "motion.impacts", f"{impacts}: one impact {state} in this version; accepted: 1"),
         (geometry.striker_material is not None, "striker.material", f"the striker is rigid {state}; leave it out"),
-        (geometry.target.name != "half_space", "target.shape", f"{geometry.target.name}: {state} accepted half_space"),
-        (
-            geometry.shape.name not in YIELDING_UNDER,
-            "striker.shape",
-            f"{geometry.shape.name}: {state} accepted {shapes}",
-        ),
+        (target.name != "half_space", "target.shape", f"{target.name}: {state} accepted half_space"),
+        (shape.name not in YIELDING_UNDER, "striker.shape", f"{shape.name}: {state} accepted {shapes}"),
     ]
     return [Fault(source, key, reason) for refused, key, reason in wrong if refused]
 
@@ -229,19 +228,3 @@ def finite_faults(source: str, model: Model, geometry: Geometry, impacts: int | 
 def _split() -> list[str]:
     """Energies of the volume and of what changes none."""
     return [name for name, energy in ENERGIES.members.items() if energy.splits]
-
-
-def places(shape: Shape, target: Target, deep: str) -> dict[str, str]:
-    """Where in a scene file stands what a part refuses; `deep`: what a depth comes from."""
-    yielding = "target" if target.deformable else "striker"
-    own = {"material": f"{yielding}.material", "relaxation": f"{yielding}.material", "numerics": "numerics"}
-    return {**own, "depth": deep, target.name: "target", shape.name: "striker"}
-
-
-def tables(shape: Shape, target: Target, material: Material, striker: Material | None) -> tuple[Table, Table]:
-    """The striker's and the target's table of a scene file that gives them back."""
-    own, held = shape.to_dict(), target.to_dict()
-    if not target.deformable:
-        return own | {"material": material.to_dict()}, held
-    first = {} if striker is None else {"material": striker.to_dict()}
-    return own | first, held | {"material": material.to_dict()}

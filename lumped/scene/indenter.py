@@ -10,7 +10,7 @@ from pathlib import Path
 from lumped.errors import BadInput, Fault, addressed
 from lumped.materials import Material
 from lumped.numbers import Array
-from lumped.scene.geometry import Geometry, check_striker_material, contact_modulus, places, plasticity_faults, tables
+from lumped.scene.geometry import Geometry, plasticity_faults
 from lumped.scene.tables import Model, load_indenter
 from lumped.schema import Table
 from lumped.schema.keys import Number
@@ -38,8 +38,7 @@ class Indenter:
     source: str = "scene"
 
     def __post_init__(self) -> None:
-        self.target.check_striker(self.source, self.shape)
-        check_striker_material(self.source, self.target, self.shape, self.striker_material, inertia=False)
+        self.geometry.check_striker(self.source, inertia=False)
         faults = plasticity_faults(self.source, self.model, self.geometry)
         if faults:
             raise BadInput(faults)
@@ -64,7 +63,7 @@ class Indenter:
 
     def addressed(self) -> AbstractContextManager[None]:
         """Inside, what a part refuses is said of the file and its keys, or of --depths."""
-        return addressed(self.source, places(self.shape, self.target, "--depths"))
+        return addressed(self.source, self.geometry.places("--depths"))
 
     def elastic(self, instant: bool) -> Indenter:
         """The same with the elastic materials that a slow or, `instant`, a sudden indentation meets."""
@@ -74,7 +73,7 @@ class Indenter:
     def modulus(self, instant: bool) -> float:
         """E* against a slow or, `instant`, a sudden indentation, Pa. Raises BadInput where there is none."""
         with self.addressed():
-            contact = contact_modulus(self.shape, self.material, self.striker_material)
+            contact = self.geometry.contact_modulus
         if instant and contact.viscosity > 0.0:
             raise self._refused("has a dashpot in parallel: infinitely stiff at once; accepted: leave out --instant")
         if not instant and contact.relaxed == 0.0:
@@ -102,7 +101,7 @@ class Indenter:
 
     def to_dict(self) -> Table:
         """The tables of a scene file that gives it back."""
-        striker, target = tables(self.shape, self.target, self.material, self.striker_material)
+        striker, target = self.geometry.tables()
         return {"name": self.name, "striker": striker, "target": target, "model": vars(self.model).copy()}
 
     def _refused(self, reason: str) -> BadInput:

@@ -12,17 +12,7 @@ from typing import Annotated, Protocol
 from lumped.errors import BadInput, Fault, addressed
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material, Relaxation
-from lumped.scene.geometry import (
-    Geometry,
-    absurd_depth,
-    check_striker_material,
-    contact_modulus,
-    flying_faults,
-    places,
-    plasticity_faults,
-    relaxed_impact,
-    tables,
-)
+from lumped.scene.geometry import Geometry, absurd_depth, flying_faults, plasticity_faults, relaxed_impact
 from lumped.scene.tables import (
     LAWS,
     MASS,
@@ -76,22 +66,20 @@ class Scene:
         if (self.shape is None) != (self.material is None):
             missing = "striker.shape" if self.shape is None else "target.material"
             raise BadInput(Fault(self.source, missing, "missing; shape and material come together"))
-        if self.shape is not None:
-            self.target.check_striker(self.source, self.shape)
-            check_striker_material(self.source, self.target, self.shape, self.striker_material, self.model.inertia)
+        geometry = self.geometry if self.has_geometry else None
+        if geometry is not None:
+            geometry.check_striker(self.source, self.model.inertia)
         density = None if self.material is None else self.material.density
-        target = self.target if self.has_geometry else None
+        target = None if geometry is None else geometry.target
         faults = inertia_faults(self.source, self.model.inertia, density, target)
         faults += mass_faults(self.source, self.mass, self.swinging_mass)
         faults += gravity_faults(self.source, self.model)
-        faults += plasticity_faults(
-            self.source, self.model, self.geometry if self.has_geometry else None, self.motion.impacts
-        )
-        if self.model.finite and not self.has_geometry:
+        faults += plasticity_faults(self.source, self.model, geometry, self.motion.impacts)
+        if self.model.finite and geometry is None:
             reason = "finite: a law of its own has no body that is strained; accepted: small"
             faults.append(Fault(self.source, "model.kinematics", reason))
-        if self.model.inertia and self.has_geometry:
-            faults += flying_faults(self.source, self.geometry, self.mass, self.target_mass)
+        if self.model.inertia and geometry is not None:
+            faults += flying_faults(self.source, geometry, self.mass, self.target_mass)
         if faults:
             raise BadInput(faults)
         if self.shape is not None:
@@ -149,7 +137,7 @@ class Scene:
     @cached_property
     def contact_modulus(self) -> Relaxation:
         """E*(t) of the contact, Pa. Raises BadInput without geometry."""
-        return contact_modulus(self.geometry.shape, self.geometry.material, self.striker_material)
+        return self.geometry.contact_modulus
 
     @property
     def load_curve(self) -> LoadCurve:
@@ -204,8 +192,8 @@ class Scene:
         """The tables of striker and target."""
         striker: Table = {"mass": self.mass, "velocity": self.velocity}
         target: Table = {} if self.target_mass is None else {"mass": self.target_mass}
-        if self.shape is not None and self.material is not None:
-            own, held = tables(self.shape, self.target, self.material, self.striker_material)
+        if self.has_geometry:
+            own, held = self.geometry.tables()
             striker, target = own | striker, held | target
         return {"striker": striker, "target": target}
 
@@ -222,8 +210,7 @@ class Scene:
 
     def addressed(self) -> AbstractContextManager[None]:
         """Inside, what a part refuses is said of this scene's file and keys."""
-        known = {} if self.shape is None else places(self.shape, self.target, "striker.velocity")
-        return addressed(self.source, known)
+        return addressed(self.source, self.geometry.places("striker.velocity") if self.has_geometry else {})
 
     def check_law(self) -> None:
         """Raise BadInput for a law of the scene's own that has no answer for it."""
@@ -240,10 +227,8 @@ class Scene:
     def check_memory(self) -> None:
         """Raise BadInput where no surface alone remembers: of a body with lengths, nu(t) changes the load curve."""
         if not self.geometry.surface_remembers:
-            reason = '"bulk" changes nu in time, which no load curve follows'
-            raise BadInput(
-                Fault(self.source, "target.material.constant", f'{reason}; accepted: "poisson", or --method fe')
-            )
+            reason = '"bulk" changes nu in time, which no load curve follows; accepted: "poisson", or --method fe'
+            raise BadInput(Fault(self.source, "target.material.constant", reason))
 
     def check_sunk(self, depth: float, contact_radius: float = 0.0) -> None:
         """Raise BadInput where an impact went to a depth, m, or a contact radius, m, that is too much."""

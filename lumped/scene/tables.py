@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
 from pathlib import Path
 from typing import Annotated, ClassVar, Protocol, TypeVar, cast
 
@@ -268,7 +267,7 @@ class TableReader:
         young = self.made(path, law.of, placed(values, self.folder), "material", "samples", "prony fit")
         if young is None:
             return None
-        return self.made(path, partial(Material.of_reference, young), common, "material")
+        return self.made(path, lambda **own: Material(young, **own).with_reference(young), common, "material")
 
 
 class SceneReader(TableReader):

@@ -152,11 +152,8 @@ class Choice:
 class Flag:
     """true or false."""
 
-    accepted: str = "true or false"
-
-    @property
-    def schema(self) -> Table:
-        return {"type": "boolean"}
+    accepted: ClassVar[str] = "true or false"
+    schema: ClassVar[Table] = {"type": "boolean"}
 
     def read(self, value: object) -> bool:
         if not isinstance(value, bool):
@@ -168,11 +165,8 @@ class Flag:
 class Text:
     """A printable text of one to 200 characters that may be part of a file's name."""
 
-    accepted: str = "a printable text of 1 to 200 characters without / and \\"
-
-    @property
-    def schema(self) -> Table:
-        return {"type": "string", "pattern": r"^[^./\\][^/\\]*$"}
+    accepted: ClassVar[str] = "a printable text of 1 to 200 characters without / and \\"
+    schema: ClassVar[Table] = {"type": "string", "pattern": r"^[^./\\][^/\\]*$"}
 
     def read(self, value: object) -> str:
         if not isinstance(value, str) or not 1 <= len(value.strip()) <= 200:
@@ -187,10 +181,7 @@ class File:
     """A file's name, maybe with folders before it; it reads as a path, which `placed` puts where it belongs."""
 
     accepted: str = "the name of a file, from the folder of the scene file"
-
-    @property
-    def schema(self) -> Table:
-        return {"type": "string", "pattern": r"\S"}
+    schema: ClassVar[Table] = {"type": "string", "pattern": r"\S"}
 
     def read(self, value: object) -> Path:
         if not isinstance(value, str | Path) or not str(value).strip() or not str(value).isprintable():

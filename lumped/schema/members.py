@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 from pkgutil import iter_modules
-from typing import Generic, TypeVar
+from typing import ClassVar, Generic, TypeVar
 
 from lumped.errors import BadInput, Fault, nearest, shown
 from lumped.schema import Table
@@ -85,11 +85,8 @@ class Member:
 class Anything:
     """A key of which nothing is known but its name."""
 
-    accepted: str = "any value"
-
-    @property
-    def schema(self) -> Table:
-        return {}
+    accepted: ClassVar[str] = "any value"
+    schema: ClassVar[Table] = {}
 
     def read(self, value: object) -> object:
         return value

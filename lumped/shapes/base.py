@@ -144,6 +144,8 @@ class Bent(Mixed):
 class FlatEnded(Shape):
     """Flat up to its own radius, nothing beyond: a force in proportion to the depth."""
 
+    exponent_of_force: ClassVar[float] = 1.0
+
     def height(self, r: ArrayLike) -> Array:
         """Zero up to the rim, infinite beyond."""
         return np.where(np.abs(np.asarray(r, dtype=float)) <= self.fixed_radius, 0.0, np.inf)
@@ -153,23 +155,20 @@ class FlatEnded(Shape):
         return self.height(r)
 
     @property
-    def exponent_of_force(self) -> float:
-        """1."""
-        return 1.0
-
-    @property
     @abstractmethod
     def fixed_radius(self) -> float:
         """That of the rim, m."""
 
 
 class Round(Shape):
-    """A profile with a radius R at its tip, m."""
+    """A profile with a `radius` R at its tip, m."""
+
+    radius: float
 
     @property
-    @abstractmethod
     def tip_radius(self) -> float:
         """R, m."""
+        return self.radius
 
 
 class Circular(Round):
@@ -177,13 +176,13 @@ class Circular(Round):
 
     def height(self, r: ArrayLike) -> Array:
         """R - sqrt(R^2-r^2) = r^2/(R + sqrt(R^2-r^2)), m, which cancels no digit; infinite beyond R."""
-        square = (np.asarray(r, dtype=float) / self.tip_radius) ** 2
-        rise = self.tip_radius * square / (1.0 + np.sqrt(np.maximum(1.0 - square, 0.0)))
+        square = (np.asarray(r, dtype=float) / self.radius) ** 2
+        rise = self.radius * square / (1.0 + np.sqrt(np.maximum(1.0 - square, 0.0)))
         return np.where(square <= 1.0, rise, np.inf)
 
     def slope(self, r: ArrayLike) -> Array:
         """r/sqrt(R^2-r^2), infinite from R on."""
-        ratio = np.abs(np.asarray(r, dtype=float)) / self.tip_radius
+        ratio = np.abs(np.asarray(r, dtype=float)) / self.radius
         with np.errstate(divide="ignore"):
             return np.where(ratio < 1.0, ratio / np.sqrt(np.maximum(1.0 - ratio**2, 0.0)), np.inf)
 
@@ -193,8 +192,8 @@ class Parabolic(Round):
 
     def height(self, r: ArrayLike) -> Array:
         """r^2/(2R), m."""
-        return np.asarray(np.asarray(r, dtype=float) ** 2 / (2.0 * self.tip_radius))
+        return np.asarray(np.asarray(r, dtype=float) ** 2 / (2.0 * self.radius))
 
     def slope(self, r: ArrayLike) -> Array:
         """r/R."""
-        return np.asarray(np.abs(np.asarray(r, dtype=float)) / self.tip_radius)
+        return np.asarray(np.abs(np.asarray(r, dtype=float)) / self.radius)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lumped.load_curves import cone
+from lumped.load_curves.sneddon import ConeCurve
 from lumped.numbers import Array
 from lumped.schema.keys import Key, Number, Part
 from lumped.shapes.base import Shape
@@ -23,28 +22,20 @@ class Cone(Shape):
         float, Key(Number(0.01, 80.0, "degrees, between face and undeformed surface"), "how steep the face is")
     ]
     name: ClassVar[str] = "cone"
+    exponent_of_force: ClassVar[float] = 2.0
 
     def height(self, r: ArrayLike) -> Array:
         """r tan(angle)."""
-        return np.asarray(self._tangent * np.abs(np.asarray(r, dtype=float)))
+        return np.asarray(self.load_curve.steepness * np.abs(np.asarray(r, dtype=float)))
 
     def slope(self, r: ArrayLike) -> Array:
         """tan(angle)."""
-        return np.full(np.shape(r), self._tangent)
+        return np.full(np.shape(r), self.load_curve.steepness)
 
     @property
-    def exponent_of_force(self) -> float:
-        """2."""
-        return 2.0
-
-    @property
-    def load_curve(self) -> cone.ConeCurve:
+    def load_curve(self) -> ConeCurve:
         """Sneddon's closed form, F = (2/pi) E* depth^2/tan(angle)."""
-        return cone.ConeCurve(self.angle)
-
-    @property
-    def _tangent(self) -> float:
-        return math.tan(math.radians(self.angle))
+        return ConeCurve(self.angle)
 
 
 MEMBER = Part(Cone)

@@ -11,7 +11,7 @@ from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.hertz import HertzImpact
 from lumped.load_curves.plane_contact import CylinderProfile, LineProfile, ParabolaProfile
 from lumped.schema.keys import Key, Number, Part
-from lumped.shapes.base import SIZE, Circular, Parabolic, Shape
+from lumped.shapes.base import SIZE, Circular, Parabolic
 
 
 @dataclass(frozen=True)
@@ -22,16 +22,7 @@ class Cylinder(Circular):
     length: Annotated[float, Key(Number(1e-9, 1e6, "m"), "length along the surface")]
     name: ClassVar[str] = "cylinder"
     plane: ClassVar[bool] = True
-
-    @property
-    def exponent_of_force(self) -> float:
-        """1, as Table 1 has it: F = (pi/4) E* l depth."""
-        return 1.0
-
-    @property
-    def tip_radius(self) -> float:
-        """Its radius, m."""
-        return self.radius
+    exponent_of_force: ClassVar[float] = 1.0  # as Table 1 has it: F = (pi/4) E* l depth
 
     @property
     def line_profile(self) -> LineProfile:
@@ -49,7 +40,7 @@ class Cylinder(Circular):
         reason = "no load curve of a half-space in plane strain; accepted: layer"
         raise BadInput(Fault("cylinder", "target.shape", reason))
 
-    def resolved(self, profile: str) -> Shape:
+    def resolved(self, profile: str) -> Cylinder:
         """Itself, or the parabola with the same curvature."""
         return ParabolicCylinder(self.radius, self.length) if profile == "parabola" else self
 
@@ -71,10 +62,6 @@ class ParabolicCylinder(Parabolic, Cylinder):
     def line_profile(self) -> LineProfile:
         """The parabola."""
         return ParabolaProfile(self.radius)
-
-    def resolved(self, profile: str) -> Cylinder:
-        """Itself."""
-        return self
 
 
 MEMBER = Part(Cylinder)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-from lumped.load_curves import fixed_area
+from lumped.load_curves.fixed_area import PunchCurve
 from lumped.schema.keys import Key, Part
 from lumped.shapes.base import SIZE, FlatEnded
 
@@ -23,9 +23,9 @@ class Punch(FlatEnded):
         return self.radius
 
     @property
-    def load_curve(self) -> fixed_area.PunchCurve:
+    def load_curve(self) -> PunchCurve:
         """Boussinesq's closed form."""
-        return fixed_area.PunchCurve(self.radius)
+        return PunchCurve(self.radius)
 
 
 MEMBER = Part(Punch)

@@ -17,11 +17,7 @@ class RoundedPunch(Bent):
     flat: Annotated[float, Key(SIZE, "radius of the flat end", name="flat_radius")]
     edge_radius: Annotated[float, Key(SIZE, "radius of curvature of the edge around it")]
     name: ClassVar[str] = "rounded_punch"
-
-    @property
-    def exponent_of_force(self) -> float:
-        """1, that of its start: F = 2 E* b depth."""
-        return 1.0
+    exponent_of_force: ClassVar[float] = 1.0  # that of its start: F = 2 E* b depth
 
     @property
     def load_curve(self) -> BentCurve:

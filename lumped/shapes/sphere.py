@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from lumped.load_curves.hertz import Hertz, HertzImpact, hertz_impact
-from lumped.load_curves.sneddon_sphere import SneddonSphere
+from lumped.load_curves.sneddon import SneddonSphere
 from lumped.schema.keys import Key, Part
 from lumped.shapes.base import SIZE, Circular, Parabolic, Round, Shape
 
@@ -17,16 +17,7 @@ class RoundShape(Round):
     """A profile with this radius at its tip, m. Raises BadInput for a radius out of range."""
 
     radius: Annotated[float, Key(SIZE, "radius of the sphere")]
-
-    @property
-    def exponent_of_force(self) -> float:
-        """3/2."""
-        return 1.5
-
-    @property
-    def tip_radius(self) -> float:
-        """Its radius, m."""
-        return self.radius
+    exponent_of_force: ClassVar[float] = 1.5
 
     def hertz_impact(self, modulus: float, mass: float, velocity: float) -> HertzImpact:
         """Scales of the Hertz impact, exact for the paraboloid."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass, replace
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lumped.errors import BadInput, Fault
+from lumped.errors import Fault
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
 from lumped.numbers import Array
@@ -26,7 +26,7 @@ SUPPORT = Key(Choice(SUPPORTS), "what balances the struck body")
 class RoundTarget(Target):
     """A body of this radius, m; places are distances from the line of motion, m.
 
-    `strikers`: names of its like, exact and a parabola.
+    `strikers` are its like, exact and a parabola.
 
     `support`: "free", the body balanced by its own uniform acceleration; "held", rigid from its middle plane on;
     None, it is taken as a half-space. Depth is the approach of the centres of mass. Raises BadInput.
@@ -34,9 +34,6 @@ class RoundTarget(Target):
 
     radius: Annotated[float, Key(SIZE, "radius of the struck body")]
     support: Annotated[str | None, SUPPORT]
-    strikers: ClassVar[tuple[str, str]]
-    has_inertia: ClassVar[bool] = False
-    yielding_strikers: ClassVar[bool] = True
 
     @property
     @abstractmethod
@@ -69,6 +66,10 @@ class RoundTarget(Target):
         added = whole / 6.0 / pulse.mass
         return min(added, 1.0), MOVES.format(added)
 
+    def yielding_faults(self, source: str, shape: Shape, inertia: bool) -> list[Fault]:
+        """Nothing: it is struck by its like."""
+        return []
+
     def waves_under(self, shape: Shape) -> bool:
         """Only where it flies."""
         return super().waves_under(shape) and self.support == "free"
@@ -80,12 +81,6 @@ class RoundTarget(Target):
     def matching(self, shape: Shape) -> Shape:
         """Its own profile, exact or a parabola as the striker's."""
         return self.outline.resolved("exact" if shape.name == self.strikers[0] else "parabola")
-
-    def check_striker(self, source: str, shape: Shape) -> None:
-        """Raise BadInput for a striker of another kind."""
-        if shape.name not in self.strikers:
-            reason = f"{shape.name}: a {self.name} is struck by a {self.name}"
-            raise BadInput(Fault(source, "striker.shape", reason))
 
     def check_depth(self, shape: Shape, depth: float) -> str:
         """Not deeper than the smaller body is round."""

@@ -46,18 +46,20 @@ class FreeEnd:
 class Target(Record, ABC):
     """The geometry of a struck body; its `name` is that of the scene file, its keys stand beside its fields.
 
-    `deformable`: whether it has a material; `yielding_strikers`: whether its striker may have one. `has_inertia`:
-    whether its waves can be followed; `only_with_inertia`: whether nothing is left of it without them. `large_strains`:
-    whether they are built of it, or of what strikes it, at all. `endless`: whether it goes on beyond any mesh.
+    `deformable`: whether it has a material. `has_inertia`: whether its waves can be followed; `only_with_inertia`:
+    whether nothing is left of it without them. `large_strains`: whether they are built of it, or of what strikes it, at
+    all. `endless`: whether it goes on beyond any mesh.
     """
 
-    has_inertia: ClassVar[bool]
+    has_inertia: ClassVar[bool] = False
     only_with_inertia: ClassVar[bool] = False
     deformable: ClassVar[bool] = True
-    yielding_strikers: ClassVar[bool] = False
     large_strains: ClassVar[bool] = False
     endless: ClassVar[bool] = False
     through: ClassVar[str] = ""  # what no depth may reach, where that is the height pressed
+    lead: ClassVar[float] = 1.0  # how much an overlap at the first touch grows per depth
+    strikers: ClassVar[tuple[str, ...]] = ()  # names of the only shapes that strike it, where it is for few
+    called: ClassVar[str] = ""  # in words, where its name is none
 
     @property
     def has_length(self) -> bool:
@@ -101,11 +103,6 @@ class Target(Record, ABC):
         of a flat surface, depth - height(r).
         """
         return np.asarray(np.asarray(depth, dtype=float) - shape.height(r))
-
-    @property
-    def lead(self) -> float:
-        """How much an overlap at the first touch grows per depth: half of it where both sides are alike."""
-        return 1.0
 
     def round_radius(self, shape: Shape) -> float:
         """Radius, m, of the smallest round surface that a contact may lie on, infinite where all are flat."""
@@ -161,8 +158,6 @@ class Target(Record, ABC):
 
     def yielding_faults(self, source: str, shape: Shape, inertia: bool) -> list[Fault]:
         """What is wrong with a striker of this shape that has a material as the target has, with inertia or without."""
-        if self.deformable and self.yielding_strikers:
-            return []
         reason = f'target.shape = "{self.name}" is struck by a rigid body in this version; leave it out'
         return [Fault(source, "striker.material", reason)]
 
@@ -175,7 +170,12 @@ class Target(Record, ABC):
         return []
 
     def check_striker(self, source: str, shape: Shape) -> None:
-        """Raise BadInput, naming the key, for a striker which this target is not for; here any rigid one will do."""
+        """Raise BadInput, naming the key, for a striker which this target is not for: without `strikers` any rigid one
+        will do.
+        """
+        if self.strikers and shape.name not in self.strikers:
+            reason = f"{shape.name}: {self.called or f'a {self.name}'} is struck by a {self.strikers[0]}"
+            raise BadInput(Fault(source, "striker.shape", reason))
         if isinstance(shape, Block):
             raise BadInput(Fault(source, "striker.shape", f'{shape.name}: it strikes target.shape = "plane" alone'))
 

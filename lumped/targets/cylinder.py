@@ -16,7 +16,7 @@ class CylinderTarget(RoundTarget):
 
     support: Annotated[str, SUPPORT]
     name: ClassVar[str] = "cylinder"
-    strikers: ClassVar[tuple[str, str]] = ("cylinder", "parabolic_cylinder")
+    strikers: ClassVar[tuple[str, ...]] = ("cylinder", "parabolic_cylinder")
 
     @property
     def outline(self) -> Profile:

@@ -8,7 +8,7 @@ from typing import Annotated, ClassVar
 
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
-from lumped.load_curves.half_plane import HalfPlane
+from lumped.load_curves.plane_contact import HalfPlane
 from lumped.schema.keys import Key, Number, Part
 from lumped.shapes.base import Shape
 from lumped.targets._strains import Pressed
@@ -25,7 +25,6 @@ class HalfSpace(Target):
     datum_depth: Annotated[float | None, Key(Number(1e-9, 1e9, "m"), "how far below touch the datum lies")] = None
     name: ClassVar[str] = "half_space"
     has_inertia: ClassVar[bool] = True
-    yielding_strikers: ClassVar[bool] = True
     large_strains: ClassVar[bool] = True
     endless: ClassVar[bool] = True
 

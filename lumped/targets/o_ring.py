@@ -30,9 +30,11 @@ class ORing(Target):
     mean_radius: Annotated[float, Key(SIZE, "from the axis to the middle of the section")]
     section_radius: Annotated[float, Key(SIZE, "radius of the section")]
     name: ClassVar[str] = "o_ring"
-    has_inertia: ClassVar[bool] = False
     large_strains: ClassVar[bool] = True
     through: ClassVar[str] = "the ring's thickness"
+    strikers: ClassVar[tuple[str, ...]] = ("punch",)
+    called: ClassVar[str] = "an O-ring"
+    lead: ClassVar[float] = 0.5  # the other half is the other contact's
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -44,11 +46,6 @@ class ORing(Target):
         """depth/2 - (s - sqrt(s^2 - x^2)), s the section's radius and `r` the distance x from its top."""
         section = Sphere(self.section_radius)
         return np.asarray(self.lead * np.asarray(depth, dtype=float) - section.height(r))
-
-    @property
-    def lead(self) -> float:
-        """1/2: the other half is the other contact's."""
-        return 0.5
 
     def pressed_height(self, shape: Shape) -> float:
         """The section's height, m."""
@@ -80,9 +77,8 @@ class ORing(Target):
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput for a striker that is no punch, or does not cover the ring."""
+        super().check_striker(source, shape)
         outside = self.mean_radius + self.section_radius
-        if shape.name != "punch":
-            raise BadInput(Fault(source, "striker.shape", f"{shape.name}: an O-ring is struck by a punch"))
         if (shape.fixed_radius or 0.0) < outside:
             reason = f"{shape.fixed_radius:g}: accepted from the ring's outer radius {outside:g} m on"
             raise BadInput(Fault(source, "striker.radius", reason))

@@ -25,7 +25,6 @@ class Plane(Target):
     name: ClassVar[str] = "plane"
     has_inertia: ClassVar[bool] = True
     deformable: ClassVar[bool] = False
-    yielding_strikers: ClassVar[bool] = True
     large_strains: ClassVar[bool] = True
     through: ClassVar[str] = "the block's"
 

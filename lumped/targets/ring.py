@@ -30,9 +30,9 @@ class Ring(Target):
     inner_radius: Annotated[float, Key(SIZE, "radius of the hole")]
     thickness: Annotated[float, Key(SIZE, "between the hole and what holds the ring")]
     name: ClassVar[str] = "ring"
-    has_inertia: ClassVar[bool] = False
     large_strains: ClassVar[bool] = True
     through: ClassVar[str] = "the ring's thickness"
+    strikers: ClassVar[tuple[str, ...]] = ("cylinder", "parabolic_cylinder")
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -74,8 +74,7 @@ class Ring(Target):
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput for a striker that is no cylinder, or does not fit in."""
-        if shape.name not in ("cylinder", "parabolic_cylinder"):
-            raise BadInput(Fault(source, "striker.shape", f"{shape.name}: a ring is struck by a cylinder"))
+        super().check_striker(source, shape)
         if (shape.tip_radius or 0.0) >= self.inner_radius:
             reason = f"{shape.tip_radius:g}: accepted below the ring's inner radius {self.inner_radius:g} m"
             raise BadInput(Fault(source, "striker.radius", reason))

@@ -22,7 +22,7 @@ class SphereTarget(RoundTarget):
     support: Annotated[str | None, SUPPORT] = None
     name: ClassVar[str] = "sphere"
     has_inertia: ClassVar[bool] = True
-    strikers: ClassVar[tuple[str, str]] = ("sphere", "parabola")
+    strikers: ClassVar[tuple[str, ...]] = ("sphere", "parabola")
 
     @property
     def outline(self) -> Profile:

@@ -25,9 +25,9 @@ class Washer(Target):
     height: Annotated[float, Key(SIZE, "thickness of the washer")]
     base: Annotated[str, BASE]
     name: ClassVar[str] = "washer"
-    has_inertia: ClassVar[bool] = False
     large_strains: ClassVar[bool] = True
     through: ClassVar[str] = "the washer's height"
+    strikers: ClassVar[tuple[str, ...]] = ("punch",)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -68,8 +68,7 @@ class Washer(Target):
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput for a striker that is no punch, or passes through the hole."""
-        if shape.name != "punch":
-            raise BadInput(Fault(source, "striker.shape", f"{shape.name}: a washer is struck by a punch"))
+        super().check_striker(source, shape)
         if (shape.fixed_radius or 0.0) <= self.inner_radius:
             reason = f"{shape.fixed_radius:g}: accepted above the washer's inner radius {self.inner_radius:g} m"
             raise BadInput(Fault(source, "striker.radius", reason))

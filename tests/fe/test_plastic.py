@@ -12,6 +12,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 import restitution_laws as published
+from first_yield import first_yield
 from scipy.integrate import solve_ivp
 from scipy.special import beta
 from skfem import MeshTri
@@ -36,7 +37,6 @@ from lumped import Result, Scene, simulate
 from lumped.errors import BadInput
 from lumped.indentation import Indentation
 from lumped.laws import ting
-from lumped.materials.plasticity import first_yield
 from lumped.result.model_ledger import FLOW
 from lumped.scene.indenter import Indenter
 from lumped.scene.tables import SceneReader

@@ -135,9 +135,9 @@ def test_contact_radius_and_depth_are_inverse(curve: LayerCurve) -> None:
 def test_stiffness_is_the_slope_of_the_force_and_that_of_a_punch(curve: LayerCurve) -> None:
     step = 1e-5 * DEPTHS
     slope = (curve.force(DEPTHS + step) - curve.force(DEPTHS - step)) / (2.0 * step)
-    np.testing.assert_allclose(slope, curve.dforce_ddepth(DEPTHS), rtol=1e-8)
+    np.testing.assert_allclose(slope, curve.force_and_slope(DEPTHS)[1], rtol=1e-8)
     radius = float(curve.contact_radius(DEPTHS[-1]))
-    assert curve.dforce_ddepth(DEPTHS[-1]) == pytest.approx(LayerPunch(radius, curve.layer).stiffness, rel=1e-10)
+    assert curve.force_and_slope(DEPTHS[-1])[1] == pytest.approx(LayerPunch(radius, curve.layer).stiffness, rel=1e-10)
     a = curve.contact_radius(DEPTHS[1:])
     change = (curve.depth(a * (1 + 1e-5)) - curve.depth(a * (1 - 1e-5))) / (2e-5 * a)
     np.testing.assert_allclose(change, curve.depth_slope(a), rtol=1e-8)
@@ -256,13 +256,13 @@ def test_thin_limits_are_powers_whose_pressure_carries_the_force(plane: bool) ->
         depth = 2e-4
         a = float(thin.contact_radius(depth))
         measure = 2.0 * a * weights if plane else 2.0 * np.pi * a**2 * nodes * weights
-        assert measure @ thin.pressure_at(a * nodes, depth) == pytest.approx(float(thin.force(depth)), rel=1e-12)
+        assert measure @ thin.pressure(a * nodes, a) == pytest.approx(float(thin.force(depth)), rel=1e-12)
         assert float(thin.energy(depth)) == pytest.approx(
             depth * float(thin.force(depth)) / (thin.exponent + 1.0), rel=1e-12
         )
         step = 1e-6 * depth
         slope = (thin.force(depth + step) - thin.force(depth - step)) / (2.0 * step)
-        assert float(thin.dforce_ddepth(depth)) == pytest.approx(float(slope), rel=1e-9)
+        assert float(thin.force_and_slope(depth)[1]) == pytest.approx(float(slope), rel=1e-9)
 
 
 def test_known_panels_are_not_solved_again(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from first_yield import first_yield
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lumped.materials.plasticity import ROOT, Yielding, first_yield
+from lumped.materials.plasticity import ROOT, Yielding
 from lumped.numbers import Array
 
 YOUNG, NU, STRENGTH = 200.0, 0.3, 0.4

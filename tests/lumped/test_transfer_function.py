@@ -32,7 +32,7 @@ def history(scene: Scene, count: int) -> tuple[float, Array, Array, Array]:
     depth, velocity, force = (local(places, column[first], times) for column in (rows.depth, rows.velocity, rows.force))
     depth[0] = 0.0
     curve = scene.profile.load_curve
-    return float(times[1]), curve.force(depth), curve.dforce_ddepth(depth) * velocity, force
+    return float(times[1]), curve.force(depth), curve.force_and_slope(depth)[1] * velocity, force
 
 
 def routes(scene: Scene, count: int) -> tuple[float, float]:

@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault, NotReached
 from lumped.load_curves.base import LoadCurve
-from lumped.load_curves.half_plane import check_datum
 from lumped.load_curves.layer import PointLayer
+from lumped.load_curves.plane_contact import HalfPlane, ParabolaProfile
 from lumped.numbers import Array, Real
 
 
@@ -33,7 +33,7 @@ class Johnson(LoadCurve):
     nu: float
 
     def __post_init__(self) -> None:
-        check_datum(self.datum_depth, self.nu)
+        HalfPlane(ParabolaProfile(self.radius), self.datum_depth, self.nu)  # refuses what this refuses
 
     @property
     def extent(self) -> float:
@@ -76,10 +76,10 @@ class Johnson(LoadCurve):
         b = np.asarray(contact_radius, dtype=float)
         return 0.5 * b / self.radius * (self._logarithm(b) - 1.0 - self._side)
 
-    def dforce_ddepth(self, depth: ArrayLike) -> Real:
-        """pi/[2 ln(2d/b) - 1 - nu/(1-nu)]: a flat punch's, as far as the datum is far."""
+    def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
+        """F/E* and pi/[2 ln(2d/b) - 1 - nu/(1-nu)]: a flat punch's, as far as the datum is far."""
         b = np.asarray(self.contact_radius(depth))
-        return np.where(b > 0.0, pi / (self._logarithm(b) - 1.0 - self._side), 0.0)
+        return self.force(depth), np.where(b > 0.0, pi / (self._logarithm(b) - 1.0 - self._side), 0.0)
 
     def pressure(self, radius: ArrayLike, contact_radius: float) -> Array:
         """sqrt(b^2-x^2)/(2R)."""
@@ -116,9 +116,9 @@ class Popov(LoadCurve):
         """2 b/R."""
         return 2.0 * np.asarray(contact_radius) / self.radius
 
-    def dforce_ddepth(self, depth: ArrayLike) -> Real:
-        """pi/4."""
-        return np.where(np.asarray(depth) >= 0.0, 0.25 * pi, 0.0)
+    def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
+        """(pi/4) depth, m, and pi/4."""
+        return self.force(depth), np.where(np.asarray(depth) >= 0.0, 0.25 * pi, 0.0)
 
     def pressure(self, radius: ArrayLike, contact_radius: float) -> Array:
         """sqrt(b^2-x^2)/(2R)."""
@@ -174,10 +174,10 @@ class ThinLayer(LoadCurve):
         """2 a/(spread R)."""
         return 2.0 * np.asarray(contact_radius) / (self.spread * self.radius)
 
-    def dforce_ddepth(self, depth: ArrayLike) -> Real:
-        """alpha F/depth."""
+    def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
+        """F/E* and alpha F/(E* depth)."""
         d = np.maximum(np.asarray(depth, dtype=float), 0.0)
-        return self.exponent * np.divide(self.force(d), d, out=np.zeros_like(d), where=d > 0.0)
+        return self.force(d), self.exponent * np.divide(self.force(d), d, out=np.zeros_like(d), where=d > 0.0)
 
     def pressure(self, radius: ArrayLike, contact_radius: float) -> Array:
         """p0 (1 - r^2/a^2)^power."""

@@ -1,7 +1,6 @@
 """Hencky: linear in logarithmic strains."""
 
-from lumped.materials.energies._stretches import log_difference_squared
-from lumped.materials.energies.base import Invariants, Jet, StrainEnergy
+from lumped.materials.energies.base import Invariants, Jet, StrainEnergy, log_difference_squared
 
 
 def density(invariants: Invariants, shear: float, lame: float) -> Jet:

@@ -1,7 +1,6 @@
 """Ogden's three terms of vulcanised rubber, with the volume apart; doi 10.1098/rspa.1972.0026."""
 
-from lumped.materials.energies._stretches import hyperbolic_cosine
-from lumped.materials.energies.base import Invariants, Jet, StrainEnergy, compression
+from lumped.materials.energies.base import Invariants, Jet, StrainEnergy, compression, hyperbolic_cosine
 
 # Physics: exponents, and moduli in kg/cm2, of Treloar's rubber; the latter are scaled to the shear modulus.
 POWERS, MODULI = (1.3, 5.0, -2.0), (6.3, 0.012, -0.1)
