@@ -143,9 +143,13 @@ FOUND: dict[str, tuple[str, float | None, Relaxation, dict[str, Any]]] = {
     ),
 }
 
+DEAR = "where the path turns"
+
 
 @pytest.mark.tenth
-@pytest.mark.parametrize("kind", FOUND)
+@pytest.mark.parametrize(
+    "kind", [pytest.param(kind, marks=pytest.mark.full) if kind == DEAR else kind for kind in FOUND]
+)
 def test_what_once_lay_outside_lies_within(kind: str) -> None:
     name, nu, young, given = FOUND[kind]
     scene = scene_of(name, young, nu)

@@ -62,7 +62,9 @@ def test_impacts_lie_within_their_bars(
 
 
 @pytest.mark.family
-@pytest.mark.parametrize("make", [sphere_cone, rounded_punch, profile])
+@pytest.mark.parametrize(
+    "make", [sphere_cone, *(pytest.param(one, marks=pytest.mark.full) for one in (rounded_punch, profile))]
+)
 def test_impacts_on_a_layer_lie_within_their_bars(
     make: Callable[[np.random.Generator, float], Shape],
     campaign_size: Callable[[int], int],

@@ -50,7 +50,7 @@ def quantities(bounces: WaveRun, number: int) -> dict[str, float]:
     return known | {"start": contact.strike.touched_at, "velocity": contact.strike.velocity}
 
 
-@pytest.mark.tenth
+@pytest.mark.full
 def test_four_contacts_meet_the_tolerance_of_the_packaged_scene() -> None:
     """The fourth begins on what three have left on its way: a bulk too coarse for that shows there first."""
     found = fe_contact.run("ball-bouncing-waves")

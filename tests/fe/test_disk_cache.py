@@ -68,7 +68,11 @@ def bits(found: Result) -> list[object]:
 
 @pytest.mark.family
 @pytest.mark.parametrize(
-    "name", ["polymer-sphere", "polymer-layer", "rod-in-ring", "polymer-punch", "polymer-half-plane", "polymer-o-ring"]
+    "name",
+    [
+        *("polymer-sphere", "polymer-layer", "rod-in-ring", "polymer-punch", "polymer-half-plane"),
+        pytest.param("polymer-o-ring", marks=pytest.mark.full),
+    ],
 )
 def test_numbers_with_and_without_are_the_same_to_the_bit(name: str, disk: Path) -> None:
     cold, files = forgotten(name), entries(disk)
@@ -93,7 +97,9 @@ def test_a_body_of_constant_bulk_modulus_is_known_too(disk: Path) -> None:
 
 
 @pytest.mark.family
-@pytest.mark.parametrize("name", ["polymer-sphere", "polymer-layer", "rod-in-ring"])
+@pytest.mark.parametrize(
+    "name", ["polymer-sphere", "polymer-layer", pytest.param("rod-in-ring", marks=pytest.mark.full)]
+)
 def test_a_known_geometry_loads_neither_gmsh_nor_scikit_fem(name: str, disk: Path) -> None:
     (force, loaded), (again, loaded_again) = in_a_process(name), in_a_process(name)
     assert force == again

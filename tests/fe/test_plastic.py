@@ -477,7 +477,7 @@ def test_forces_lie_among_the_published_ones_and_where_the_ledger_says() -> None
 @pytest.mark.tenth
 def test_a_cone_is_self_similar() -> None:
     """No length: F ~ depth^2, whatever it flows."""
-    found = pressed([1e-6, 4e-6], COARSE, shape="cone", angle=2.0)
+    found = pressed([1e-6, 4e-6], COARSEST, shape="cone", angle=2.0)
     share, bar = found.force / found.depth**2, found.force_error / found.force
     assert abs(share[0] / share[1] - 1.0) < bar.sum() < 0.1
 

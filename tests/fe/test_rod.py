@@ -138,7 +138,7 @@ def test_steps_that_agree_by_chance_make_no_bar_too_small(uncovered: Callable[..
     target = {"shape": "rod", "area": 7.4e-4, "length": 2.2, "end": "fixed", "material": material}
     scene = Scene.from_dict({"striker": striker, "target": target, "model": {"inertia": True, "profile": "parabola"}})
     truth = exact(scene)
-    for steps in range(500, 1000, 20):
+    for steps in range(500, 1000, 40):
         found = simulate(scene, "fe", {"steps": steps, "tolerance": 0.1})
         assert not uncovered(found, truth), steps
 

@@ -166,7 +166,13 @@ def test_a_row_of_contacts_ends_by_name(monkeypatch: pytest.MonkeyPatch) -> None
 
 @pytest.mark.tenth
 @pytest.mark.parametrize(
-    "name", ["polymer-sphere-waves", "ball-bouncing-waves", "polymer-layer-waves", "two-finite-spheres-waves"]
+    "name",
+    [
+        "polymer-sphere-waves",
+        pytest.param("ball-bouncing-waves", marks=pytest.mark.full),
+        "polymer-layer-waves",
+        "two-finite-spheres-waves",
+    ],
 )
 def test_the_cost_of_waves_is_known_before(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Within a factor of two: what is counted is unknowns times steps."""
