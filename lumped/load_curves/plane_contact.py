@@ -1,5 +1,4 @@
-"""Symmetric frictionless contact in plane strain, per unit length: profiles, collocation, and the tabulated curve;
-the half-plane's, where depth has a meaning only against a point some way below.
+"""Symmetric frictionless contact in plane strain, per unit length: profiles, collocation, and the tabulated curve.
 
 With y = x/b on the contact |x| <= b the pressure is E* Q(y)/sqrt(1-y^2) with an even Q, and Q(1) = 0 where the
 profile leaves the surface smoothly. Collocation is at Chebyshev's nodes: kernels -ln|y-y'| and |y-y'|, times smooth
@@ -11,18 +10,15 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cache, cached_property
-from math import inf, log
+from math import inf
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault
-from lumped.load_curves.base import elastic_faults
 from lumped.load_curves.tabulated import REACH, TabulatedCurve, TabulatedState, growing_edges
 from lumped.numbers import Array
-
-HALF_PLANE_POINTS = 24  # work: collocation points over the half-width: the kernel is smooth, as many do for all widths
 
 
 @dataclass(frozen=True)
@@ -227,40 +223,3 @@ class LineCurve(TabulatedCurve):
             return np.zeros(np.shape(radius))
         here = self.grown(contact_radius, 1.0)
         return here.collocation.at(here.q, np.asarray(radius, dtype=float) / contact_radius)
-
-
-@dataclass(frozen=True)
-class HalfPlane(LineCurve):
-    """Depth is the approach of the cylinder to the material point `datum_depth` (m) below first touch, per unit length.
-
-    A line load P at x' moves the surface at x, against that point, by (2 P/(pi E*)) [ln(r/|x-x'|) - d^2/(2(1-nu) r^2)]
-    with r^2 = d^2 + x'^2 (Flamant 1892). Half-widths up to the datum's depth and to 0.85 of a true cylinder's radius.
-    `nu` in (-1, 0.5]. Raises BadInput.
-    """
-
-    datum_depth: float
-    nu: float
-    reach: ClassVar[float] = 1.0
-
-    def __post_init__(self) -> None:
-        faults = elastic_faults("half_space", self.nu)
-        if not 0.0 < self.datum_depth < inf:
-            reason = "in plane strain the half-plane has no finite compliance without it"
-            message = f"must be above 0 m, is {self.datum_depth}: {reason}"
-            faults.insert(0, Fault("half_space", "datum_depth", message))
-        if faults:
-            raise BadInput(faults)
-
-    @property
-    def length(self) -> float:
-        """The datum's depth, m."""
-        return self.datum_depth
-
-    def points(self, half_width: float) -> float:
-        """As many for all."""
-        return HALF_PLANE_POINTS
-
-    def smooth(self, y: Array, half_width: float, refinement: float) -> Array:
-        """What the datum moves by, (n,)."""
-        far = 1.0 + (half_width / self.datum_depth * y) ** 2
-        return 0.5 * np.log(far) - 0.5 / ((1.0 - self.nu) * far) - log(half_width / self.datum_depth)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from lumped.load_curves.hertz import Hertz, HertzImpact, hertz_impact
-from lumped.load_curves.sneddon import SneddonSphere
+from lumped.load_curves.sneddon_sphere import SneddonSphere
 from lumped.schema.keys import Key, Part
 from lumped.shapes.base import SIZE, Circular, Parabolic, Round, Shape
 

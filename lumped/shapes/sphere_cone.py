@@ -8,7 +8,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lumped.load_curves.sneddon import SphereConeCurve
+from lumped.load_curves.sphere_cone import SphereConeCurve
 from lumped.numbers import Array
 from lumped.schema.keys import Key, Number, Part
 from lumped.shapes.base import SIZE, Mixed

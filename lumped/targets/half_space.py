@@ -8,7 +8,7 @@ from typing import Annotated, ClassVar
 
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
-from lumped.load_curves.plane_contact import HalfPlane
+from lumped.load_curves.half_plane import HalfPlane
 from lumped.schema.keys import Key, Number, Part
 from lumped.shapes.base import Shape
 from lumped.targets._strains import Pressed

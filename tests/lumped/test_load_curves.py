@@ -11,7 +11,7 @@ from lumped import Material, Relaxation, Scene, laws, simulate
 from lumped.load_curves import ConeCurve, Hertz, LoadCurve, Power, SneddonSphere
 from lumped.load_curves.fixed_area import Column, PunchCurve
 from lumped.load_curves.sampled import SampledCurve
-from lumped.load_curves.sneddon import SHALLOW
+from lumped.load_curves.sneddon_sphere import SHALLOW
 from lumped.scene.scene import Answered
 from lumped.shapes import Parabola, Shape, Sphere
 from lumped.shapes.punch import Punch

@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault, NotReached
 from lumped.load_curves.base import LoadCurve
+from lumped.load_curves.half_plane import HalfPlane
 from lumped.load_curves.layer import PointLayer
-from lumped.load_curves.plane_contact import HalfPlane, ParabolaProfile
+from lumped.load_curves.plane_contact import ParabolaProfile
 from lumped.numbers import Array, Real
 
 

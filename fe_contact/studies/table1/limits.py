@@ -17,9 +17,10 @@ from fe_contact.assembly.forms import Array
 from fe_contact.indentation import indent
 from fe_contact.studies.finite_exponents import first_beyond
 from lumped.indentation import Indentation, power_law
+from lumped.load_curves.half_plane import HalfPlane
 from lumped.load_curves.layer import LineLayer, PointLayer
 from lumped.load_curves.plane_contact import CylinderProfile as Profile
-from lumped.load_curves.plane_contact import HalfPlane, LineCurve
+from lumped.load_curves.plane_contact import LineCurve
 from lumped.paper.table1 import Elastic, TableRow, pressed
 from lumped.result.result import Quantity
 from lumped.scene.indenter import Indenter
