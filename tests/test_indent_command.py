@@ -134,6 +134,13 @@ def test_bad_depths_write_nothing(depths: str, write: Any, refused: Callable[...
     assert "--depths" in refused("indent", write(target=LAYER), f"--depths={depths}")[0]
 
 
+def test_every_bad_depth_is_named(write: Any, refused: Callable[..., list[str]]) -> None:
+    """What is no number hides neither another one nor a number that no depth can be."""
+    told = refused("indent", write(target=LAYER), "--depths=abc,1e-5,nan,,1e-2")
+    assert [line.split(":")[1].strip() for line in told] == ["'abc'", "''", "nan", "0.01"]
+    assert all("accepted" in line for line in told)
+
+
 @pytest.mark.parametrize(
     ("method", "target", "reason"),
     [("hertzz", "half_space", "hertz"), ("hertz", LAYER, "half-space alone"), ("mdr", LAYER, "half-space alone")],
