@@ -86,7 +86,7 @@ class ContactTooBrief(NotReached):
     """The contact ended within so few steps that nothing can be read of it."""
 
     def __init__(self, steps: int, time: float) -> None:
-        cure = "cure: --method ting where it answers, or less viscosity"
+        cure = "cure: --method ting where it answers, more numerics.steps, or less viscosity"
         super().__init__(f"the contact was over after {steps} steps, at t = {time:.3g} s, sooner than expected; {cure}")
 
 
