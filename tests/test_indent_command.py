@@ -145,7 +145,7 @@ def test_every_bad_depth_is_named(write: Any, refused: Callable[..., list[str]])
 def test_depths_that_no_mesh_serves_are_named_beside_the_thickness(
     depths: str, write: Any, refused: Callable[..., list[str]]
 ) -> None:
-    """A cone's contacts are as unlike as its depths, or hardly there beside the layer: which to change is the user's."""
+    """A cone's contacts are as unlike as its depths, or hardly there beside the layer: the user may change either."""
     (told,) = refused("indent", write(shape='cone"\nangle = 20.0\n# "', target=LAYER), f"--depths={depths}")
     assert told.startswith("pressed.toml: --depths, target.thickness: ")
     assert "accepted" in told
