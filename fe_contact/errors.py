@@ -29,12 +29,13 @@ def faults_of(scene: Scene | Indenter) -> Iterator[None]:
 
 
 def _lengths(scene: Scene | Indenter) -> str:
-    """The keys of the body that is meshed."""
+    """The keys of the body that is meshed; and the option that says how far it is pressed."""
     part, body = ("target", scene.target) if scene.target.deformable else ("striker", scene.shape)
     numbers = (
         () if body is None else [name for name, key in keys_of(type(body)).items() if isinstance(key.kind, Number)]
     )
-    return ", ".join(f"{part}.{key}" for key in numbers) or part
+    asked = ["--depths"] if isinstance(scene, Indenter) else []
+    return ", ".join([*asked, *(f"{part}.{key}" for key in numbers)]) or part
 
 
 class ContactNotSettled(NotReached):
@@ -85,7 +86,7 @@ class ContactTooBrief(NotReached):
     """The contact ended within so few steps that nothing can be read of it."""
 
     def __init__(self, steps: int, time: float) -> None:
-        cure = "cure: --method ting where it answers, or less viscosity"
+        cure = "cure: --method ting where it answers, more numerics.steps, or less viscosity"
         super().__init__(f"the contact was over after {steps} steps, at t = {time:.3g} s, sooner than expected; {cure}")
 
 

@@ -192,12 +192,12 @@ class Indentation:
         }
         return dict(plain(content))
 
-    def write(self, directory: Path) -> None:
+    def write(self, directory: str | Path) -> None:
         """Make indentation.csv and result.json the content of a folder of results.
 
         Raises CannotWrite; what was there stays then, see :mod:`lumped.result.folder`.
         """
-        publish(directory, self.write_files)
+        publish(Path(directory), self.write_files)
 
     def write_files(self, folder: Path) -> None:
         """The same files, one after the other, into a folder that is there."""

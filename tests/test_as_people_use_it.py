@@ -154,6 +154,22 @@ def test_an_indentation_is_that_of_the_command_whatever_it_is_asked_of() -> None
     assert abs(found[0].quantities["alpha"].value - 1.5) <= found[0].quantities["alpha"].error + 1e-3
 
 
+def test_what_is_found_is_written_where_a_text_says(result: Result, tmp_path: Path) -> None:
+    """As a path of `pathlib` does, whatever was found."""
+    points = {"scene": "polymer-sphere", "methods": ["ting"], "axes": {"striker.velocity": [0.02]}}
+    found = {
+        "result.json": result,
+        "indentation.csv": fe_contact.indent("polymer-punch", [1e-5], 0.1),
+        "fit.json": fe_contact.fit(result.history, "hertz", result.scene),
+        "transfer.csv": fe_contact.transfer(result.scene, ["ting"], method="ting"),
+    }
+    for name, one in found.items():
+        one.write(str(tmp_path / name[:3]))
+        assert (tmp_path / name[:3] / name).is_file()
+    fe_contact.sweep(points).write(str(tmp_path), 0.0)
+    assert (tmp_path / "table.csv").is_file()
+
+
 @pytest.mark.tenth
 def test_what_is_found_is_drawn(result: Result, tmp_path: Path) -> None:
     compared = fe_contact.compare("polymer-sphere", ["hertz", "mdr"], tolerance=0.05)

@@ -134,6 +134,23 @@ def test_bad_depths_write_nothing(depths: str, write: Any, refused: Callable[...
     assert "--depths" in refused("indent", write(target=LAYER), f"--depths={depths}")[0]
 
 
+def test_every_bad_depth_is_named(write: Any, refused: Callable[..., list[str]]) -> None:
+    """What is no number hides neither another one nor a number that no depth can be."""
+    told = refused("indent", write(target=LAYER), "--depths=abc,1e-5,nan,,1e-2")
+    assert [line.split(":")[1].strip() for line in told] == ["'abc'", "''", "nan", "0.01"]
+    assert all("accepted" in line for line in told)
+
+
+@pytest.mark.parametrize("depths", ["1e-12,1e-4", "1e-15"])
+def test_depths_that_no_mesh_serves_are_named_beside_the_thickness(
+    depths: str, write: Any, refused: Callable[..., list[str]]
+) -> None:
+    """A cone's contacts are as unlike as its depths, or hardly there beside the layer: the user may change either."""
+    (told,) = refused("indent", write(shape='cone"\nangle = 20.0\n# "', target=LAYER), f"--depths={depths}")
+    assert told.startswith("pressed.toml: --depths, target.thickness: ")
+    assert "accepted" in told
+
+
 @pytest.mark.parametrize(
     ("method", "target", "reason"),
     [("hertzz", "half_space", "hertz"), ("hertz", LAYER, "half-space alone"), ("mdr", LAYER, "half-space alone")],

@@ -16,10 +16,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 from scipy.stats import spearmanr
 
 import fe_contact
 from fe_contact.cli import main
+from fe_contact.studies import style
 from fe_contact.studies.sweep import study
 from fe_contact.studies.sweep.cases import load
 from fe_contact.studies.sweep.chart import plot_sweep
@@ -355,6 +358,22 @@ def test_there_is_a_chart_where_a_number_varies(changed: dict[str, object], draw
     paths = plot_sweep(fe_contact.sweep(tables(("hertz", "ting"), **changed)), tmp_path)
     assert [path.name for path in paths] == ["sweep.svg", "sweep.png"] * drawn
     assert all(path.stat().st_size > 10_000 for path in paths)
+
+
+def test_no_method_is_named_over_the_bars(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of many methods their names stand above all panels, whose bars leave no place."""
+    drawn = list[Figure]()
+    monkeypatch.setattr(style, "save", lambda figure, where, name: drawn.append(figure))
+    methods = ("hertz", "ting", "kelvin", "mdr", "jankowski", "linear_spring", "mahmoud")
+    plot_sweep(fe_contact.sweep(tables(methods, draws={"count": 9, "seed": 1, SPEED: {"uniform": [0.1, 1]}})), tmp_path)
+    (figure,) = drawn
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == list(methods)
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    below = max(axes.get_tightbbox(renderer).y1 for axes in figure.axes)
+    above = min(text.get_window_extent(renderer).y0 for text in figure.texts)
+    assert below < legend.get_window_extent(renderer).y0
+    assert legend.get_window_extent(renderer).y1 < above
 
 
 def test_ranks_say_which_key_moves_what() -> None:

@@ -77,6 +77,7 @@ def test_a_striker_that_gravity_holds_is_beyond_laws_of_one_approach() -> None:
     for name in ("ting", "mdr"):
         assert said[name].bar is None
         assert "approaches again" in said[name].reason
+        assert "cure: --method fe" in said[name].reason
 
 
 def test_a_law_with_choices_of_its_own_is_another_model() -> None:

@@ -20,12 +20,25 @@ def execute(args: argparse.Namespace) -> int:
 
     indenter, table = base.read_indenter(args)
     given = settings(table, None, indenter.source)
-    depths = tuple(base.number(text, "--depths") for text in args.depths.split(","))
+    depths = _depths(args.depths, indenter)
     where = base.folder(args, "indent", indenter.name)
     found = _indented(args, indenter, depths, given)
     content, told = base.publish(where, found.write_files)
     title, *lines = found.summary().split("\n  ")
     return base.report(args, found, content, [*lines, told], title, indenter.model)
+
+
+def _depths(text: str, indenter: Indenter) -> tuple[float, ...]:
+    """The depths asked for, m. Raises BadInput with every fault, where one of them is no number."""
+    depths, faults = list[float](), list[Fault]()
+    for one in text.split(","):
+        try:
+            depths.append(base.number(one, "--depths"))
+        except BadInput as bad:
+            faults += bad.faults
+    if faults:
+        raise BadInput([*faults, *indenter.depth_faults(depths)])
+    return tuple(depths)
 
 
 def _indented(args: argparse.Namespace, indenter: Indenter, depths: tuple[float, ...], given: Table) -> Indentation:

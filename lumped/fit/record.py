@@ -121,12 +121,12 @@ class Fit:
         }
         return dict(plain(content))
 
-    def write(self, directory: Path) -> None:
+    def write(self, directory: str | Path) -> None:
         """Make fit.json, fit.csv (the fitted history) and parameters.csv the content of a folder of results.
 
         Raises CannotWrite; what was there stays then, see :mod:`lumped.result.folder`.
         """
-        publish(directory, self.write_files, RECORD)
+        publish(Path(directory), self.write_files, RECORD)
 
     def write_files(self, folder: Path) -> None:
         """The same files, one after the other, into a folder that is there."""

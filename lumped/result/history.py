@@ -45,7 +45,9 @@ class End(Enum):
     SEPARATED = "separated"
     TIME = "not separated at end_time"
     REST = "not separated: the striker came to rest"
-    SECOND_APPROACH = "the striker approaches again before it has left, which this law does not follow"
+    SECOND_APPROACH = (
+        "the striker approaches again before it has left, which this law does not follow; cure: --method fe"
+    )
 
 
 class ForceOverTime:

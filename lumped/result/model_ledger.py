@@ -138,6 +138,8 @@ def inertia(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
     estimate, note = scene.target.inertia_left_out(geometry.shape, geometry.material, pulse)
     faults = changing_faults("", geometry) + whole_mass_faults("", geometry, scene.mass, scene.target_mass)
     refused = [str(fault) for fault in faults]
+    if isinstance(geometry.shape, Block) and geometry.material.young.viscosity > 0.0:
+        refused.append("a dashpot in parallel has no wave speed")
     if scene.motion.impacts > 1 and scene.target.rings_on(geometry.shape):
         refused.append("what rings on between contacts is followed in one impact")
     built = scene.target.waves_under(geometry.shape) and not (model.finite or model.plasticity or refused)

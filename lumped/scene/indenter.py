@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -84,12 +84,15 @@ class Indenter:
         """The depths, m, as they were given; raises BadInput for one that cannot be."""
         if not 1 <= len(depths) <= MOST_DEPTHS:
             raise BadInput(Fault("--depths", "", f"{len(depths)} depths; accepted: 1 to {MOST_DEPTHS}"))
-        faults = [Fault("--depths", "", f"{d:g}: accepted {DEPTH.accepted}") for d in depths if not _accepted(d)]
-        wrong = [(d, self.target.check_depth(self.shape, d)) for d in depths if _accepted(d)]
-        faults += [Fault("--depths", "", f"{d:g}: {reason}") for d, reason in wrong if reason]
-        if faults:
+        if faults := self.depth_faults(depths):
             raise BadInput(faults)
         return depths
+
+    def depth_faults(self, depths: Sequence[float]) -> list[Fault]:
+        """Depths, m, that cannot be."""
+        faults = [Fault("--depths", "", f"{d:g}: accepted {DEPTH.accepted}") for d in depths if not _accepted(d)]
+        wrong = [(d, self.target.check_depth(self.shape, d)) for d in depths if _accepted(d)]
+        return faults + [Fault("--depths", "", f"{d:g}: {reason}") for d, reason in wrong if reason]
 
     def check_contacts(self, depths: Array, contact_radii: Array) -> None:
         """Raise BadInput for depths, m, whose contacts, m, are too wide for the target."""

@@ -7,7 +7,7 @@ handed on.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, ClassVar, Protocol, TypeVar, cast
@@ -298,8 +298,9 @@ class SceneReader(TableReader):
         numerics = self.table("numerics", required=False)
         if alone or bodies["target"] is not None:
             self.inertia(model, bodies.get("target"))
+        self.faults += self.unfit(bodies)
         if self.faults:
-            raise BadInput(self.faults)
+            raise BadInput([*self.faults, *self.at_odds(bodies, model)])
         built = kind(**bodies, law=law, model=model, motion=motion, name=name, source=self.source)
         if law is not None and law_known:
             built.check_law()
@@ -311,10 +312,29 @@ class SceneReader(TableReader):
         bodies = self.bodies(optional(STRIKER_KEYS))
         model = self.record(Model)
         numerics = self.table("numerics", required=False)
+        self.faults += self.unfit(bodies)
         if self.faults:
             raise BadInput(self.faults)
         own = {key: bodies[key] for key in ("shape", "material", "target", "striker_material")}
         return kind(**own, model=model, name=name, source=self.source), numerics
+
+    def unfit(self, bodies: Table) -> Sequence[Fault]:
+        """What is wrong with a striker that the target is not for, where both are known."""
+        shape, target = bodies["shape"], bodies.get("target")
+        if shape is None or target is None:
+            return ()
+        try:
+            target.check_striker(self.source, shape)
+        except BadInput as bad:
+            return bad.faults
+        return ()
+
+    def at_odds(self, bodies: Table, model: Model) -> list[Fault]:
+        """Values that are accepted each alone and not together, which a scene that is made finds by itself."""
+        shape, mass = bodies["shape"], bodies.get("mass")
+        may_swing = model.inertia and (shape is None or shape.own_mass(1.0) > 0.0)
+        light = [] if mass is None else mass_faults(self.source, mass, float(may_swing))
+        return light + gravity_faults(self.source, model)
 
     def record(self, kind: type[R]) -> R:
         """The record of the table with its name; what is missing, or has a fault, as by default."""

@@ -130,7 +130,7 @@ def parsed(path: Path) -> Table:
     try:
         text = content(path, MOST_BYTES, kind).decode("utf-8-sig")  # editors on Windows put a mark before it
     except UnicodeDecodeError as error:
-        raise BadInput(Fault(source, "", "cannot be read: not a text in UTF-8")) from error
+        raise BadInput(Fault(source, "", f"cannot be read: not a text in UTF-8; accepted: {kind}, in UTF-8")) from error
     try:
         return _tables(text)
     except ValueError as error:

@@ -98,6 +98,9 @@ INERTIA, BULK, WEIGHT = "target inertia", "constant nu against constant bulk mod
 RELAXING: dict[str, object] = {
     "target.material": {"law": "sls", "E0": 1e6, "R1": 0.5, "R2": 0.01, "nu": 0.4, "density": HEAVY}
 }
+DASHPOT: dict[str, object] = {
+    "striker.material": {"law": "kelvin_voigt", "E": 1e6, "eta": 1e2, "nu": 0.4, "density": HEAVY}
+}
 THREE: dict[str, object] = {"motion.impacts": 3, "model.gravity": 9.81}
 STRAINED: dict[str, object] = {"model.kinematics": "finite"}
 ELASTIC: dict[str, object] = {
@@ -114,6 +117,7 @@ SPLIT: dict[str, object] = {"target.material.hyperelastic": "neo_hooke_split"}
         ("polymer-sphere", {"target.material.constant": "bulk"}, INERTIA, {"model.inertia": True}, False),
         ("polymer-sphere", THREE, INERTIA, {"model.inertia": True}, True),
         ("polymer-layer", THREE, INERTIA, {"model.inertia": True}, False),
+        ("polymer-prism", DASHPOT, INERTIA, {"model.inertia": True}, False),
         ("polymer-sphere-waves", {}, BULK, {"target.material.constant": "bulk"}, False),
         ("polymer-layer-waves", {}, BULK, {"target.material.constant": "bulk"}, True),
         ("polymer-sphere", THREE, BULK, {"target.material.constant": "bulk"}, True),

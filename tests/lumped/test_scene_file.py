@@ -219,6 +219,28 @@ def test_all_faults_come_at_once_but_at_most_twenty() -> None:
     assert len(faults(table)) == 20
 
 
+@pytest.mark.parametrize(
+    ("second", "key"),
+    [
+        ({"striker.mass": 0.0}, "striker.mass"),
+        ({"model.gravity": 9.81, "model.direction": "horizontal"}, "model.gravity"),
+        ({"striker": {"shape": "punch", "radius": 1.0, "mass": 1.0, "velocity": 1.0}, "target.shape": "sphere",
+          "target.radius": 1.0}, "striker.shape"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_of_two_keys_is_told_beside_what_is_wrong_of_one(second: dict[str, object], key: str) -> None:
+    """No light body, no weight across the motion, no striker that a target is not for waits for the next try."""
+    with pytest.raises(BadInput) as caught:
+        read(Scene, SOLID, "scene.toml", {**second, "motion.impacts": 0})
+    assert {"motion.impacts", key} <= {fault.key for fault in caught.value.faults}
+
+
+def test_a_block_that_swings_may_have_no_mass_whatever_else_is_wrong() -> None:
+    with pytest.raises(BadInput) as caught:
+        Scene.load("polymer-prism-waves", {"striker.mass": 0.0, "striker.velocity": 0.0})
+    assert [fault.key for fault in caught.value.faults] == ["striker.velocity"]
+
+
 def test_an_empty_law_misses_its_name() -> None:
     """Masses alone have no other way to answer; without a law at all it is the shape that is missing."""
     masses = {"name": "two", "striker": {"mass": 1.0, "velocity": 1.0}}
@@ -251,6 +273,7 @@ def test_an_unknown_network_may_mean_anything_by_a_key_that_is_several_things() 
 
 def test_inertia_names_the_missing_density_too() -> None:
     table = changed("model.inertia", True)
+    table["striker"] |= {"shape": "punch", "radius": 0.03}
     table["target"] |= {"shape": "washer", "inner_radius": 0.01, "outer_radius": 0.02, "height": 0.01, "base": "bonded"}
     del table["target"]["material"]["density"]
     keys = [fault.split(": ")[1] for fault in faults(table)]
@@ -325,6 +348,7 @@ def test_unreadable_files_are_one_line_each(tmp_path: Path) -> None:
         with pytest.raises(BadInput) as caught:
             load(Scene, path)
         assert str(caught.value).count("\n") == 0
+        assert path == broken or "accepted: " in str(caught.value)
 
 
 def test_unknown_packaged_name_suggests_the_nearest() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,7 +13,7 @@ from matplotlib.ticker import MaxNLocator
 from fe_contact.studies import style
 from fe_contact.studies.style import Look
 from fe_contact.studies.sweep.cases import Axis, Sweep
-from fe_contact.studies.sweep.table import SweepTable
+from fe_contact.studies.sweep.table import LEAST_RANKED, SweepTable
 from lumped.numbers import Array
 from lumped.result.result import UNITS
 
@@ -22,6 +23,7 @@ NAME, WIDTH = "sweep", 130  # of the files; characters in a line of the heading
 INSIDE = 0.48  # look: of a map's width and height from its middle, where a number is not cut by the frame
 EVEN = 1e-6  # rounding: of steps between values that were spaced evenly
 LEVELS, BINS = 9, 24  # look: lines of a map at most; bars of a histogram at most
+ABOVE, ROW, NAMES = 0.35, 0.17, 5  # look: in, above the panels without a legend; a row of that, in, and names in one
 WIDE, THIN = 2.6, 1.0  # look: of the first method's curve and the last one's, so that none hides another, pt
 
 
@@ -166,11 +168,14 @@ def _scatter(table: SweepTable, numbers: list[str], where: Path) -> tuple[Path, 
     keys = [key for key, column in table.numbers.items() if np.ptp(column) > 0.0]
     text = [
         "Above: answers that converged, of all cases, by value. Below: Spearman's rank correlation of each quantity "
-        "with each key; 1 or -1 where the quantity grows or falls with it alone."
+        "with each key; 1 or -1 where the quantity grows or falls with it alone, no bar where either takes fewer than "
+        f"{LEAST_RANKED} values."
     ]
     left = min(0.4, 0.03 + 0.0085 * max(map(len, keys)))
     height = 0.18 * len(keys) * len(table.sweep.methods) + 0.25
-    with style.sheet(where, NAME, _title(table.sweep), text, 2.1 + height, width=WIDTH) as sheet:
+    methods = len(table.sweep.methods)
+    above = ABOVE + (ROW * math.ceil(methods / NAMES) if methods > 1 else 0.0)
+    with style.sheet(where, NAME, _title(table.sweep), text, 2.1 + height, width=WIDTH, above=above) as sheet:
         look: Look = {"wspace": 0.16, "hspace": 0.95 / (1.0 + height), "height_ratios": [1.55, height]}
         panels = sheet.panels(2, len(QUANTITIES), left, 0.985, **look)
         for place, quantity in enumerate(QUANTITIES):
@@ -179,8 +184,10 @@ def _scatter(table: SweepTable, numbers: list[str], where: Path) -> tuple[Path, 
             _ranks(panels[len(QUANTITIES) + place], table, keys, quantity)
             if place:
                 panels[len(QUANTITIES) + place].set_yticklabels([])
-        if len(table.sweep.methods) > 1:
-            panels[0].legend()
+        if methods > 1:  # above the titles: there is no place between bars
+            corner = (left, sheet.top + 0.8 * ABOVE / sheet.figure.get_figheight())
+            names = panels[0].get_legend_handles_labels()
+            sheet.figure.legend(*names, loc="lower left", bbox_to_anchor=corner, ncols=NAMES, borderaxespad=0.0)
     return sheet.paths
 
 

@@ -166,12 +166,13 @@ class SweepTable:
         )
         return f"{len(places)} of {self.converged.size} answers did not converge; {first}"
 
-    def write(self, where: Path, wall: float, parquet: bool = False) -> None:
+    def write(self, where: str | Path, wall: float, parquet: bool = False) -> None:
         """``table.csv``, ``sweep.json`` and, where it is asked for, ``table.parquet``; raises ExtraMissing."""
-        write_csv(where / "table.csv", self.header, self.lines())
-        write_json(where / "sweep.json", self.record(wall))
+        folder = Path(where)
+        write_csv(folder / "table.csv", self.header, self.lines())
+        write_json(folder / "sweep.json", self.record(wall))
         if parquet:
-            write_parquet(where / "table.parquet", dict(zip(self.header, self._columns(), strict=True)))
+            write_parquet(folder / "table.parquet", dict(zip(self.header, self._columns(), strict=True)))
 
     def _columns(self) -> Iterator[Sequence[object] | npt.NDArray[np.generic]]:
         """Of the table, each of all its rows."""

@@ -172,10 +172,10 @@ class TransferStudy:
             "sentence": said,
         }
 
-    def write(self, where: Path) -> Table:
+    def write(self, where: str | Path) -> Table:
         """Write ``transfer.csv`` and ``transfer.json`` into a folder; the content of the latter."""
         lines = [{name: cell for name, cell in row.to_json().items() if name != "reason"} for row in self.rows]
-        return write_study(where, "transfer", self.to_json(), {"transfer": lines})
+        return write_study(Path(where), "transfer", self.to_json(), {"transfer": lines})
 
 
 def transfer(scene_with: SceneWith, given: Given, asked: Asked, progress: Progress = silent) -> TransferStudy:
