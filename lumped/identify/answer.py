@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from lumped.fit.profile import open_side
 from lumped.identify.ensemble import posterior_of
-from lumped.identify.histories import Histories, Noise
+from lumped.identify.histories import RTOL, Histories, Noise
 from lumped.identify.profile import LikelihoodProfile, Valley, correlation_of, quantile
 from lumped.identify.record import ByReference, FittedCurve, Identified, Interval, Posterior, ToldValley, hull
 from lumped.laws import ting
@@ -39,7 +39,7 @@ def answer(
     """At the most likely place, and in the other valleys; `names`: of the curves; `sample`: draws of the posterior."""
     sought = valleys[0].sought
     residuals = histories.whitened(histories.differences(sought))
-    tested = whiteness(_inside(histories, sought, residuals))
+    tested = whiteness(_judged(histories, sought, residuals))
     growth = 1.0 if tested.noise else max(map(memory, residuals))
     widened = math.sqrt(growth)
     bound, least = quantile(histories) * growth, histories.squares(sought)
@@ -79,10 +79,17 @@ def _apart(
     return apart, tuple(found)
 
 
-def _inside(histories: Histories, sought: Array, columns: Sequence[Array]) -> list[Array]:
-    """The rows during the contact: where no force is, no law errs."""
-    every = zip(histories.pressed(sought), columns, strict=True)
-    return [column[pressed[-column.size :]] for pressed, column in every]
+def _judged(histories: Histories, sought: Array, residuals: Sequence[Array]) -> list[Array]:
+    """The rows during the contact, of curves that leave more than an impact's integration errs by.
+
+    Where no force is, no law errs.
+    """
+    every = zip(histories.samples, histories.differences(sought), histories.pressed(sought), residuals, strict=True)
+    return [
+        column[pressed[-column.size :]]
+        for one, left, pressed, column in every
+        if np.linalg.norm(left) > RTOL * one.peak * math.sqrt(left.size)
+    ]
 
 
 def _fitted(histories: Histories, sought: Array, names: Sequence[str], bands: Sequence[Array]) -> Iterator[FittedCurve]:

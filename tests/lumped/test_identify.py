@@ -168,6 +168,21 @@ def test_a_wrong_law_is_called_wrong(law: str, campaign_size: Callable[..., int]
     assert np.mean(called) >= 0.95
 
 
+def test_a_curve_of_the_law_itself_leaves_nothing_to_be_judged() -> None:
+    """What is left is the rounding of two integrations; ten times what they may err by is judged, and called wrong."""
+    table = scene(STRIKERS[0], {"law": "sls", "E0": 1e6, "R1": 2.0, "R2": 0.02})
+    built = Scene.from_dict(table)
+    history = simulate(laws.ting.of(built), built, 1e-9).history
+    curve = Curve(history.time, history.force)
+    found = identify({"curve": curve}, table, ["target.material.R1"])
+    assert found.adequate
+    assert found.verdict == "the law explains the curves: too little is left of them to be judged"
+    assert not [one for one in found.warnings if "not to be trusted" in one]
+    assert found.parameters["target.material.R1"].value == pytest.approx(2.0, rel=1e-5)
+    wave = 1e-5 * curve.force.max() * np.sin(40.0 * curve.time / curve.time[-1])
+    assert not identify({"curve": replace(curve, force=curve.force + wave)}, table, ["target.material.R1"]).adequate
+
+
 def test_an_interval_is_that_of_the_whole_profile() -> None:
     """Of one modulus, against the sum of squares itself, the touch sought anew at every modulus."""
     rng = np.random.default_rng(SEED)
