@@ -92,6 +92,14 @@ def test_a_law_that_leaves_out_what_is_taken_in_is_refused(refused: Callable[...
     assert "model.plasticity, which hertz leaves out; accepted: --method fe" in line
 
 
+def test_a_law_alone_has_no_larger_model(refused: Callable[..., list[str]]) -> None:
+    (line,) = refused("run", "paper-steel-hertz", "--model", "sufficient")
+    assert line.endswith(
+        "--model: sufficient: there are larger models of a shape and a material, and the scene has a "
+        "law alone; accepted: given"
+    )
+
+
 def test_what_is_measured_is_said_in_the_unit_of_the_ledger() -> None:
     yields = MeasuredEffect("plasticity", "model.plasticity=true", 0.28, -0.24, 0.02)
     assert str(yields) == "plasticity (model.plasticity=true): estimate 28 % | measured -24 % +- 2 %"

@@ -41,6 +41,9 @@ def _modelled(args: argparse.Namespace, scene: Scene, table: Table) -> tuple[Sce
     """The scene with the model asked for, and a line that says which effects it takes in. Raises BadInput."""
     if args.model == "given":
         return scene, []
+    if scene.shape is None:
+        reason = "sufficient: there are larger models of a shape and a material, and the scene has a law alone"
+        raise BadInput(Fault("--model", "", f"{reason}; accepted: given"))
     from fe_contact.methods import settings
     from fe_contact.studies.larger_models import sufficient
 
