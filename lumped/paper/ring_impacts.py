@@ -13,16 +13,15 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault, NotReached
 from lumped.materials.networks import sls
 from lumped.materials.relaxation import Relaxation
+from lumped.numbers import Array
 from lumped.paper.given import Examples, Ptmd, RingLining
 from lumped.paper.value import MILLI, Value
 from lumped.ptmd import Measures, Oscillator, PoundingDamper, PtmdRing, Start, simulate
 
-Array = NDArray[np.float64]
 SAMPLES = 400  # work: times among which the first separation is looked for
 # The damper's path is exact to rounding, which some fifty contacts carry on.
 ROUNDING = 1e-9

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped import laws, restitution
 from lumped.errors import NotReached
@@ -18,6 +17,7 @@ from lumped.laws.correspondence import HereditaryForce, law_of
 from lumped.materials import Material
 from lumped.materials.networks import elastic, sls
 from lumped.materials.relaxation import Relaxation
+from lumped.numbers import Array
 from lumped.paper.given import Examples, RingLining, Steel
 from lumped.paper.value import (
     MICRO,
@@ -40,8 +40,6 @@ from lumped.solvers.point.bodies import Bodies, State
 from lumped.solvers.point.contact import Contact, PointMotion, contact
 from lumped.solvers.point.memory import FreeSurface
 from lumped.solvers.point.track import Outcome, PointTrack, outcome_of
-
-Array = NDArray[np.float64]
 
 TOLERANCE = 1e-6  # of the impacts by the laws
 # Physics: of the depth in the elastic force, by law.

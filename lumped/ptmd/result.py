@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from lumped.numbers import Array
 from lumped.ptmd.system import PoundingDamper, Start
 from lumped.schema import Table
 
-Array = NDArray[np.float64]
 COLUMNS = {
     "time": "time_s",
     "x1": "x1_m",
