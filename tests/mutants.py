@@ -155,7 +155,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/waves/targets/rod.py", "Dent.enforce", "signed > 0.0"): GUESS,
     ("lumped/solvers/mdr/nest.py", "pace_of", ""): GUESS,
     ("lumped/solvers/point/contact.py", "contact", "tolerance **"): GUESS,
-    ("lumped/solvers/point/phase.py", "_ratio", ""): GUESS,
+    ("lumped/solvers/radau.py", "Nodes._longer", ""): GUESS,
     ("lumped/solvers/point/bodies.py", "Step.accelerations", ""): GUESS,
     ("lumped/solvers/hereditary/closing.py", "Guess.of", ""): GUESS,
     ("lumped/solvers/hereditary/march.py", "Stretch.march", "span[1] - span[0]"): GUESS,

@@ -37,8 +37,7 @@ from lumped.solvers.hereditary.pieces import DEPTH, Followed
 from lumped.solvers.hereditary.problem import Hereditary
 from lumped.solvers.point.bodies import TINY, Bodies, Dent, Stage, State, Step
 from lumped.solvers.point.memory import RULES, FreeSurface, HeldSurface, HereditaryLoad, StepLoad, rule_of
-from lumped.solvers.point.phase import NODES
-from lumped.solvers.radau import through_zero
+from lumped.solvers.radau import NODES, through_zero
 
 ROUGH, FINE = 1e-3, 1e-6  # tolerances of scales
 FORGOTTEN = 1e-12  # rounding: of its load where contact ended, what a surface has still to creep back

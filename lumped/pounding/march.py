@@ -17,9 +17,9 @@ from lumped.numbers import Array
 from lumped.pounding.flow import TERMS, LinearBodies, longest_row
 from lumped.pounding.gaps import OPEN, FrameStep, GapEvent, GapState, Mode, after, pressed, surfaced
 from lumped.pounding.ground import GroundMotion
-from lumped.pounding.trial import NODES, FramesAt, FrameTrial, Rules
+from lumped.pounding.trial import FramesAt, FrameTrial, Rules
 from lumped.solvers.point.bodies import Bodies
-from lumped.solvers.radau import STAGES
+from lumped.solvers.radau import NODES, STAGES
 
 MOST_ROWS = 100_000  # work: a minute and half a gigabyte
 MOST_STEPS = 3000  # work: of one row, more is no motion but chatter

@@ -20,9 +20,9 @@ from lumped.pounding.gaps import FrameStep, GapState, Mode
 from lumped.pounding.ground import STILL, GroundMotion
 from lumped.pounding.march import FrameMarch, FramesFlight, OnTime, ignore, rows
 from lumped.pounding.result import FrameContact, FramesEnergy, FramesMotion, FramesResult, StoreyPeaks
-from lumped.pounding.trial import NODES, FramesAt, Rules
+from lumped.pounding.trial import FramesAt, Rules
 from lumped.solvers.point.bodies import TINY, State
-from lumped.solvers.radau import STAGES, Nodes
+from lumped.solvers.radau import NODES, STAGES, Nodes
 
 TOGETHER = 64  # work: steps that are accounted for at once
 

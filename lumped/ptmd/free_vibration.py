@@ -20,12 +20,13 @@ from lumped.pounding.gaps import OPEN, FrameStep, GapState, Mode, pressed
 from lumped.pounding.ground import STILL
 from lumped.pounding.march import FrameMarch, FramesFlight, OnTime, ignore, rows
 from lumped.pounding.simulation import Peaks
-from lumped.pounding.trial import NODES, FramesAt, Rules
+from lumped.pounding.trial import FramesAt, Rules
 from lumped.ptmd.result import Energy, Measures, PtmdContact, PtmdMotion, PtmdResult
 from lumped.ptmd.system import SIDES, PoundingDamper, PtmdRing, Start
 from lumped.schema.keys import Key, Number, read_table
 from lumped.solvers.point.bodies import TINY, State
 from lumped.solvers.point.memory import HereditaryLoad
+from lumped.solvers.radau import NODES
 
 TIME = Number(1e-9, 1e9, "s")
 TIME_KEYS = {"end_time": Key(TIME, "when to stop", False), "window": Key(TIME, "of the root mean squares", False)}
