@@ -12,10 +12,9 @@ import numpy as np
 
 from lumped.errors import BadInput, Fault
 from lumped.laws._force_law import ForceLaw
-from lumped.pounding.frames import Gap, PoundingFrames, ShearFrame
+from lumped.pounding.frames import Gap, PoundingFrames, ShearFrame, Slab
 from lumped.pounding.gap_laws import GapLaw
 from lumped.pounding.ground import STILL, GroundMotion, GroundRecord, Sine
-from lumped.pounding.slabs import Slab
 from lumped.scene.tables import LAWS, TableReader
 from lumped.schema import Table
 from lumped.schema.csv_file import read_columns, read_header
