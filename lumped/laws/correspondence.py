@@ -72,10 +72,6 @@ class HereditaryForce(ForceLaw):
         """The memories at the end of the step."""
         return tuple(self._step.memories(depth)[:, -1].tolist())
 
-    def memories_within(self, start: State, length: float, depth: Array) -> Array:
-        """The memories at the points of a step, shape (K, s), m2, from the depths there."""
-        return StepLoad.of(self.load, start.memory, length, NODES).memories(depth)
-
     def force(self, depth: Real, rate: Real, stage: Stage) -> Real:
         """F at the points of the step, N."""
         return self._step.force(depth, rate)

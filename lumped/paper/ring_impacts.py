@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cache
 
 import numpy as np
@@ -104,7 +104,7 @@ def without_damper(ptmd: Ptmd) -> Measures:
 
 def measure(measures: Measures, name: str) -> Value:
     """One of the measures, SI. Raises NotReached where it is undefined."""
-    number = measures.to_dict()[name]
+    number = asdict(measures)[name]
     if number is None:
         raise NotReached(f"free vibration: {name} is undefined; a longer ptmd.end_time may define it")
     return Value(float(number), ROUNDING * abs(float(number)))

@@ -21,11 +21,20 @@ from lumped.pounding.ground import STILL
 from lumped.pounding.march import FrameMarch, FramesFlight, OnTime, ignore, rows
 from lumped.pounding.simulation import Peaks
 from lumped.pounding.trial import FramesAt, Rules
-from lumped.ptmd.result import Energy, Measures, PtmdContact, PtmdMotion, PtmdResult
-from lumped.ptmd.system import SIDES, PoundingDamper, PtmdRing, Start
+from lumped.ptmd.system import (
+    SIDES,
+    Energy,
+    Measures,
+    PoundingDamper,
+    PtmdContact,
+    PtmdMotion,
+    PtmdResult,
+    PtmdRing,
+    Start,
+)
 from lumped.schema.keys import Key, Number, read_table
 from lumped.solvers.point.bodies import TINY, State
-from lumped.solvers.point.memory import HereditaryLoad
+from lumped.solvers.point.memory import HereditaryLoad, StepLoad
 from lumped.solvers.radau import NODES
 
 TIME = Number(1e-9, 1e9, "s")
@@ -211,8 +220,7 @@ class PtmdTrack:
         if not self.linear:
             return float(weights @ (step.force[side] * rate))
         law, gap, depth = self.laws[side], at.gaps[side], np.maximum(step.depth[side], TINY)
-        first = State(float(at.depths[side]), float(step.first_rate[side]), 0.0, gap.memory)
-        slips = law.load.load(depth) - law.memories_within(first, step.length, depth)
+        slips = law.load.load(depth) - StepLoad.of(law.load, gap.memory, step.length, NODES).memories(depth)
         modulus = law.load.modulus
         dashpots = np.divide(modulus.moduli, modulus.times) @ slips**2
         return float(weights @ (dashpots + modulus.viscosity * rate**2))
