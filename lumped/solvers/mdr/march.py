@@ -87,16 +87,11 @@ class RowTrack:
     beyond: list[Instant]
 
 
-def march(problem: RowProblem, end_time: float, pace: Pace, most: int, at_rest: float = AT_REST) -> RowTrack:
-    """Follow one impact until separation or `end_time`, s.
-
-    `pace` is that of the approach. Raises NotReached, TooManySteps after `most` steps of it.
-    """
-    return rebound(approach(problem, end_time, pace, most, at_rest), end_time, doubted=True)
-
-
 def approach(problem: RowProblem, end_time: float, pace: Pace, most: int, at_rest: float = AT_REST) -> Inward:
-    """The approach, to where the velocity is zero, or has died away in a fluid. Raises as `march` does."""
+    """The approach at a `pace`, to where the velocity is zero, or has died away in a fluid; or to `end_time`, s.
+
+    Raises NotReached, TooManySteps after `most` steps.
+    """
     row = SpringsInRow(problem)
     touch = Instant(0.0, 0.0, problem.velocity, problem.gravity, 0.0, 0.0)
     slow = at_rest * problem.velocity if problem.is_fluid and problem.gravity == 0.0 else 0.0
@@ -110,13 +105,11 @@ def rebound(inward: Inward, end_time: float, doubted: bool = False) -> RowTrack:
 
     `doubted`: whether it may turn in a last step that `end_time` cuts.
     """
-    row, turn = inward.row, inward.instants[-1]
     if inward.end:
         return _track(inward, [], inward.end)
-    if turn.acceleration >= 0.0:
+    if inward.instants[-1].acceleration >= 0.0:
         return at_turn(inward)
-    found = retreat(row, turn, end_time, doubted)
-    return _track(inward, found.instants, found.end, found.beyond)
+    return retreat(inward, end_time, doubted)
 
 
 def at_turn(inward: Inward) -> RowTrack:
@@ -238,20 +231,12 @@ def _touched(row: SpringsInRow, now: Instant, h: float, rate: float) -> tuple[fl
     return width, min(max((depth - 0.5 * (low + high)) / rate, 0.0), h)
 
 
-class Retreat(NamedTuple):
-    """Its instants from the turn on, how it ended; whole steps past an end by time."""
-
-    instants: list[Instant]
-    end: End
-    beyond: list[Instant]
-
-
-def retreat(row: SpringsInRow, start: Instant, end_time: float, doubted: bool) -> Retreat:
+def retreat(inward: Inward, end_time: float, doubted: bool) -> RowTrack:
     """From the turn until the springs at the axis leave, the edge does not reach its next place, or `end_time`, s.
 
     Raises NotReached.
     """
-    track, paces = [start], [1.0]
+    row, track, paces = inward.row, inward.instants[-1:], [1.0]
     while len(row.places) > 1:
         now = track[-1]
         shrinking = Shrinking(row, now)
@@ -260,12 +245,12 @@ def retreat(row: SpringsInRow, start: Instant, end_time: float, doubted: bool) -
             beyond = _beyond(row.copy(), now, paces)
             last = shrinking.attempt(end_time - now.time)
             if tried is None and (last.velocity > 0.0 or (doubted and shrinking.turns_before(end_time))):
-                return Retreat(track, End.SECOND_APPROACH, [])
+                return _track(inward, track, End.SECOND_APPROACH)
             cut = shrinking.step(last)
             row.take(cut)
-            return Retreat([*track, cut.now], End.TIME, beyond)
+            return _track(inward, [*track, cut.now], End.TIME, beyond)
         track.append(_taken(row, shrinking, tried, paces))
-    return Retreat(track, End.SEPARATED, [])
+    return _track(inward, track, End.SEPARATED)
 
 
 def _taken(row: SpringsInRow, shrinking: Shrinking, tried: Attempt, paces: list[float]) -> Instant:
