@@ -96,7 +96,7 @@ def search(
     certainty = certainty_of(problem, found.values, found.guess)
     fitted = space.scene_at(found.values)
     result = simulate(laws.get(law).of(fitted), fitted, RESULT_TOLERANCE)
-    history = delayed(result.history, space.touch(found.values))
+    history = replace(result.history, time=result.history.time + space.touch(found.values))
     failed = () if result.converged else (result.message,)
     return Fit(
         law=law,
@@ -130,11 +130,6 @@ def _held(space: Space) -> tuple[str, ...]:
         return ()
     cure = f"to find {'them' if len(names) > 1 else 'it'} too: --free {','.join((*space.free, *names))}"
     return (f"{', '.join(names)} held as the scene has {'them' if len(names) > 1 else 'it'}; {cure}",)
-
-
-def delayed(history: History, touch: float) -> History:
-    """The history on a clock on which the bodies meet at `touch`, s."""
-    return replace(history, time=history.time + touch)
 
 
 def best(problem: FitProblem) -> Found:

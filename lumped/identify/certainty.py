@@ -19,7 +19,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.fit.profile import Ends, WalkEnd
+from lumped.fit.profile import Ends, WalkEnd, student
 from lumped.identify.histories import Histories
 from lumped.identify.record import LEVEL, Interval, Posterior
 from lumped.numbers import Array
@@ -51,9 +51,7 @@ class Valley:
 
 def quantile(histories: Histories) -> float:
     """By how much the sum of squares over the noise may grow within an interval: Fisher's F(1, n - p), squared t."""
-    from scipy.special import stdtrit
-
-    return float(stdtrit(histories.freedom, 0.5 + 0.5 * LEVEL)) ** 2
+    return student(histories.freedom, LEVEL) ** 2
 
 
 @dataclass(frozen=True, eq=False)
