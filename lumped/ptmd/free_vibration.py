@@ -169,7 +169,7 @@ class PtmdTrack:
         self.contacts: list[PtmdContact] = []
         self.acceleration = Peaks.of(1)
         self.lost_ring = self.cut_tension = 0.0
-        self.last = FramesAt(0.0, bodies.start, self.depths(bodies.start), self.first_gaps)
+        self.last = FramesAt(0.0, bodies.start, bodies.depths(bodies.start), self.first_gaps)
         sides = zip(self.first_gaps, self.last.depths.tolist(), strict=True)
         self.held = [self.stored(side, gap, depth, 0.0) for side, (gap, depth) in enumerate(sides)]
 
@@ -180,16 +180,11 @@ class PtmdTrack:
         """Whether the ring's law has an energy of its own."""
         return self.system.ring is None or self.system.ring.exponent == 1.0
 
-    def depths(self, states: Array) -> Array:
-        """Penetration of the undeformed ring at each side, m, (..., m), negative where the damper is clear of it."""
-        return np.asarray(states[..., : self.bodies.mass.size] @ self.bodies.rows.T - self.bodies.distances)
-
     @cached_property
     def first_gaps(self) -> tuple[GapState, ...]:
         """What both sides do at t = 0: one that the damper stands in is relaxed."""
-        n, bodies = self.bodies.mass.size, self.bodies
-        depths, rates = self.depths(bodies.start), bodies.rows @ bodies.start[n:]
-        return tuple(self._begun(*one) for one in zip(self.laws, depths.tolist(), rates.tolist(), strict=True))
+        depths, rates = (found(self.bodies.start).tolist() for found in (self.bodies.depths, self.bodies.rates))
+        return tuple(self._begun(*one) for one in zip(self.laws, depths, rates, strict=True))
 
     def _begun(self, law: HereditaryForce, depth: float, rate: float) -> GapState:
         if depth <= 0.0:
@@ -230,7 +225,7 @@ class PtmdTrack:
     def flight(self, flight: FramesFlight) -> None:
         """Rows without contact."""
         lengths, apart = np.diff(flight.times)[:, None], [OPEN] * len(self.laws)
-        gaps = FramesAt(float(flight.times[0]), flight.states[0], self.depths(flight.states[0]), tuple(apart))
+        gaps = FramesAt(float(flight.times[0]), flight.states[0], self.bodies.depths(flight.states[0]), tuple(apart))
         self._switch(gaps)
         force = np.zeros((*flight.ground.shape, len(self.laws)))
         times = flight.times[:-1, None] + lengths * NODES.points
@@ -281,7 +276,7 @@ class PtmdTrack:
 
     def _forces(self, at: FramesAt) -> list[float]:
         """Of the sides at an instant, N."""
-        rates = self.bodies.rows @ at.state[self.bodies.mass.size :]
+        rates = self.bodies.rates(at.state)
         return [
             law.at_start(float(depth), float(rate), gap.memory) if gap.mode is Mode.PRESSED else 0.0
             for law, gap, depth, rate in zip(self.laws, at.gaps, at.depths, rates, strict=True)
@@ -318,7 +313,7 @@ class PtmdTrack:
         n, a = self.bodies.mass.size, self.accelerations
         absent = np.full(times.size, np.nan)
         x2, v2, a2 = (states[:, 1], states[:, 3], a[:, 1]) if n > 1 else (absent, absent, absent)
-        depth = self.depths(states).max(axis=1, initial=0.0)
+        depth = self.bodies.depths(states).max(axis=1, initial=0.0)
         force = np.maximum(forces, 0.0) @ np.array(SIDES[: len(self.laws)])  # rounding is left where a contact ends
         return PtmdMotion(times, states[:, 0], states[:, n], a[:, 0], x2, v2, a2, force, depth)
 
@@ -348,7 +343,7 @@ class PtmdTrack:
         if ring is None:
             return 0.0
         power = ring.exponent + 1.0
-        depths = np.maximum(self.depths(self.bodies.start), 0.0)
+        depths = np.maximum(self.bodies.depths(self.bodies.start), 0.0)
         return float(ring.stiffness.relaxed * (depths**power).sum() / power)
 
     def measures(self, window: float) -> Measures:
