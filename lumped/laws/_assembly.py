@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -17,7 +17,9 @@ from lumped.result.result import RULED_RELATIVE, UNITS, Quantity, Result, proven
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
 from lumped.schema import Table
-from lumped.solvers.point.track import Outcome
+
+if TYPE_CHECKING:  # the row of springs needs numpy alone
+    from lumped.solvers.point.track import Outcome
 
 # Rounding of the sums behind a quantity, relative to it.
 ROUNDING = 1e-12
