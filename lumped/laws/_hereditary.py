@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar, Protocol
@@ -126,10 +126,8 @@ class HereditaryLaw(ABC):
         return alone(self.simulation(scene, tolerance))
 
 
-class Inexact(Protocol):
-    """What a law itself leaves open of an integration: errors of quantities, and of the force, N; SI."""
-
-    def __call__(self, problem: Hereditary, course: Course) -> tuple[dict[str, float], float]: ...
+# What a law itself leaves open of an integration: errors of quantities, and of the force, N; SI.
+Inexact = Callable[[Hereditary, Course], tuple[dict[str, float], float]]
 
 
 def simulation(
