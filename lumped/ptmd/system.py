@@ -9,16 +9,21 @@ from typing import Annotated, ClassVar
 import numpy as np
 
 from lumped.errors import BadInput, Fault
+from lumped.laws.correspondence import HereditaryForce
 from lumped.materials import Relaxation
 from lumped.numbers import Array
+from lumped.pounding.flow import LinearBodies
 from lumped.schema.keys import Key, Number, Record
 from lumped.shapes.base import SIZE
+from lumped.solvers.point.memory import HereditaryLoad
 
 LENGTH = Key(SIZE, "length")
 DISPLACEMENT, VELOCITY = Key(Number(-1e4, 1e4, "m"), "displacement"), Key(Number(-1e4, 1e4, "m/s"), "velocity")
 MASS, STIFFNESS, DAMPING = Number(1e-9, 1e12, "kg"), Number(1e-9, 1e18, "N/m"), Number(0.0, 1e15, "N s/m")
 LEAST = 1e-100  # rounding: m or m/s whose energy is still a number
 SIDES = (1, -1)  # signs of the ring's two sides
+# Beyond this ratio of the shortest period to a relaxation time the digits that are promised are lost.
+STIFFEST = 6e6
 COLUMNS = {
     "time": "time_s",
     "x1": "x1_m",
@@ -121,6 +126,74 @@ class Start(Record):
     def structure(cls, displacement: float) -> Start:
         """The structure alone displaced, m."""
         return cls(displacement)
+
+
+def bodies_of(system: PoundingDamper, start: Start) -> LinearBodies:
+    """Structure and damper as masses in a row; the ring's two gaps, depth x2 - x1 - gap and x1 - x2 - gap."""
+    one, two, ring = system.structure, system.damper, system.ring
+    if two is None:
+        own = (np.array([[one.stiffness]]), np.array([[one.damping]]))
+        return LinearBodies(np.array([one.mass]), *own, np.zeros((0, 1)), np.zeros(0), np.array([start.x1, start.v1]))
+    link = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    stiffness, damping = two.stiffness * link, two.damping * link
+    stiffness[0, 0] += one.stiffness
+    damping[0, 0] += one.damping
+    sides = np.outer(SIDES, [-1.0, 1.0]) if ring else np.zeros((0, 2))
+    distances = np.full(len(sides), ring.gap if ring else 0.0)
+    placed = np.array([start.x1, start.x2, start.v1, start.v2])
+    return LinearBodies(np.array([one.mass, two.mass]), stiffness, damping, sides, distances, placed)
+
+
+@dataclass(frozen=True)
+class PowerLoad:
+    """The load curve depth^exponent, in m^exponent; as everywhere its slope counts as twice a contact radius."""
+
+    exponent: float
+
+    def force(self, depth: Array) -> Array:
+        """The load."""
+        return np.asarray(depth) ** self.exponent
+
+    def force_and_slope(self, depth: Array) -> tuple[Array, Array]:
+        """The load and its slope."""
+        return self.force(depth), np.asarray(self.exponent * np.asarray(depth) ** (self.exponent - 1.0))
+
+    def contact_radius(self, depth: Array) -> Array:
+        """Half the slope."""
+        return 0.5 * self.force_and_slope(depth)[1]
+
+    def depth_slope(self, contact_radius: Array) -> Array:
+        """d depth over d radius; infinite where the slope stays."""
+        if self.exponent == 1.0:
+            return np.full_like(contact_radius, np.inf)
+        power = self.exponent - 1.0
+        depth = (2.0 * np.asarray(contact_radius) / self.exponent) ** (1.0 / power)
+        return np.asarray(2.0 * depth ** (1.0 - power) / (self.exponent * power))
+
+
+def law_of(ring: PtmdRing, bodies: LinearBodies) -> HereditaryForce:
+    """The force of a side over its depth. Raises BadInput where it relaxes far too fast for the vibration."""
+    stiffness, mass = ring.stiffness, float(bodies.reduced_masses[0])
+    steepest = float(bodies.stiffness.max()) + _steepest(ring, bodies)
+    shortest = 2.0 * np.pi * np.sqrt(mass / steepest) / STIFFEST
+    creep = [stiffness.viscosity / stiffness.glassy] if stiffness.viscosity and stiffness.glassy else []
+    if min([*stiffness.times, *creep], default=shortest) < shortest:
+        message = f"relaxes in less than {shortest:.2g} s, too fast beside the vibration; cure: leave that term out"
+        raise BadInput(Fault("ring", "material", message))
+    ends = "depth" if stiffness.is_elastic else "force"
+    scale = float(np.pi * np.sqrt(mass / steepest))
+    return HereditaryForce(
+        load=HereditaryLoad(PowerLoad(ring.exponent), stiffness), rule=ring.memory.value, scale=scale, exit=ends
+    )
+
+
+def _steepest(ring: PtmdRing, bodies: LinearBodies) -> float:
+    """Largest slope of the ring's force over the depth, N/m, with all the energy of the start in it."""
+    glassy, power = ring.stiffness.glassy, ring.exponent
+    if glassy == 0.0:
+        return 0.0
+    deepest = ((power + 1.0) * sum(bodies.energies(bodies.start)) / glassy) ** (1.0 / (power + 1.0))
+    return float(power * glassy * deepest ** (power - 1.0))
 
 
 @dataclass(frozen=True, eq=False)

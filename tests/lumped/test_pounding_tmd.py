@@ -21,7 +21,7 @@ from lumped.pounding.flow import FrameFlow
 from lumped.pounding.march import FrameMarch
 from lumped.pounding.trial import FrameTrial
 from lumped.ptmd import Memory, Oscillator, PoundingDamper, PtmdResult, PtmdRing, Start, simulate
-from lumped.ptmd.free_vibration import bodies_of
+from lumped.ptmd.system import bodies_of
 
 POLE, DAMPER = Oscillator(20.0, 7248.9, 7.615), Oscillator(1.67, 592.9, 0.6312)
 SOLID = of_ratios(E0=0.6e6, R1=0.5, R2=0.01)

@@ -18,7 +18,7 @@ from lumped.numbers import Array, local
 from lumped.result.history import End
 from lumped.scene.geometry import stiffest_impact
 from lumped.scene.scene import Scene
-from lumped.solvers.mdr.march import Inward, RowTrack, approach, at_turn, rebound
+from lumped.solvers.mdr.march import Inward, RowTrack, approach, ended, rebound
 from lumped.solvers.mdr.row import Instant, RowProblem
 
 # Work: marches until the turn falls on a step; safety: the secant's slope is no flatter.
@@ -232,7 +232,7 @@ class Nest:
         return approach(self.problem, end, Prescribed(times), 2 * len(times), at_rest=0.0)
 
     def _back(self, inward: Inward) -> RowTrack:
-        return at_turn(inward) if self.turns else rebound(inward, self.end_time)
+        return ended(inward, End.SECOND_APPROACH) if self.turns else rebound(inward, self.end_time)
 
     def level(self, parts: int, turn: float) -> Level:
         """March with every step cut into `parts`, again with a better time of the turn, s, until that is met.
@@ -258,10 +258,10 @@ class Nest:
             raise NotReached("steps of the spring row finer than the first ones see its edge turn; cure: --method ting")
         steps += len(track.rebound) + len(track.beyond)
         outward = [*track.rebound[:-1], *track.beyond] if track.beyond else track.rebound
-        ended = track if self.cut is None else rebound(self._approach(times, self.cut), self.cut)
-        mass, last = self.problem.mass, (ended.rebound or ended.approach)[-1]
+        whole = track if self.cut is None else rebound(self._approach(times, self.cut), self.cut)
+        mass, last = self.problem.mass, (whole.rebound or whole.approach)[-1]
         motion = [mass * self.problem.gravity * last.depth, 0.5 * mass * last.velocity**2]
-        energies = np.array([*motion, ended.spent, ended.held])
+        energies = np.array([*motion, whole.spent, whole.held])
         end = End.REST if self.rests else track.end
         stop = np.array(last, dtype=float)
         return Level(_columns(track.approach), _columns(outward), stop, end, last.time, steps, energies)
