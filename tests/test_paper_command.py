@@ -15,7 +15,7 @@ from fe_contact.cli import main
 from fe_contact.studies.validate.paper import FIGURES as FIGURES_OF_REPORT
 from fe_contact.studies.validate.paper import LISTINGS
 from lumped.paper import Examples, claims, recompute
-from lumped.paper.rules import AGREES, DIFFERS, UNDECIDED, UNKNOWN, VERDICTS
+from lumped.paper.claims import AGREES, DIFFERS, UNDECIDED, UNKNOWN, VERDICTS
 from lumped.result import model_ledger as yielding
 
 TABLES = {"paper", "assumptions", "misprints", "grid"}

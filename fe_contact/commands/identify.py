@@ -16,7 +16,7 @@ from lumped.schema.files import SCENES, parse_assignment, toml_text
 
 if TYPE_CHECKING:
     from lumped.identify import Identified, Interval
-    from lumped.identify.correction import Reference
+    from lumped.identify.search import Reference
     from lumped.result.history import History
     from lumped.scene.scene import Scene
 

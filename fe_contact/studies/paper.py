@@ -7,8 +7,19 @@ from dataclasses import asdict
 from pathlib import Path
 
 from fe_contact.studies.files import Line, write_study
-from lumped.paper.claims import GridRow, JudgedClaim, PaperStudy, counts
-from lumped.paper.rules import AGREES, DIFFERS, UNDECIDED, UNJUDGED, UNKNOWN, UNPRINTED, VERDICTS
+from lumped.paper.claims import (
+    AGREES,
+    DIFFERS,
+    UNDECIDED,
+    UNJUDGED,
+    UNKNOWN,
+    UNPRINTED,
+    VERDICTS,
+    GridRow,
+    JudgedClaim,
+    PaperStudy,
+    counts,
+)
 from lumped.paper.value import Value
 from lumped.result.result import provenance
 from lumped.schema import Table

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from fe_contact.studies.files import Line, lines_of, write_study
 from lumped.ptmd.case_file import Case
-from lumped.ptmd.result import COLUMNS
 from lumped.ptmd.study import SMALL, PtmdStudy
+from lumped.ptmd.system import COLUMNS
 from lumped.result.folder import publish
 from lumped.result.result import provenance, worst
 from lumped.schema import Table
@@ -36,9 +36,9 @@ def write_ptmd(study: PtmdStudy, where: Path) -> Table:
         "model_sufficient": study.model_sufficient,
         "message": message,
         "case": study.case.to_dict(),
-        "measures": main.measures.to_dict(),
+        "measures": asdict(main.measures),
         "energy": main.energy.to_dict(),
-        "variants": {name: result.measures.to_dict() for name, result in study.results.items()},
+        "variants": {name: asdict(result.measures) for name, result in study.results.items()},
         "convergence": asdict(study.convergence),
         "model_ledger": [entry.to_json(SMALL) for entry in study.ledger],
         "provenance": provenance(),

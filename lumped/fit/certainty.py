@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from lumped.errors import BadInput, NotReached
 from lumped.fit.problem import SOLID, Coordinates, FitProblem, Values
-from lumped.fit.profile import MIXED, Ends, Seen, forward_slopes, open_side
+from lumped.fit.profile import MIXED, Ends, Seen, forward_slopes, open_side, student
 from lumped.fit.record import LEVEL, Estimate
 from lumped.fit.space import TOUCH
 from lumped.numbers import Array
@@ -202,7 +202,7 @@ class Surroundings:
         """Half the intervals of the linearization, (p + 1,); NaN where nothing is told."""
         if not self.told or not self.felt.any():
             return np.full(self._first, np.nan)
-        return student(self.freedom) * np.sqrt(np.diag(self.covariance))
+        return student(self.freedom, LEVEL) * np.sqrt(np.diag(self.covariance))
 
     def force_at_depth(self) -> Estimate:
         """The force at the depth, N."""
@@ -234,7 +234,7 @@ class Surroundings:
     @cached_property
     def _ends(self) -> Ends:
         least = float(self.error @ self.error)
-        bound = least * student(self.freedom) ** 2 / self.freedom
+        bound = least * student(self.freedom, LEVEL) ** 2 / self.freedom
         first = (self.slopes[: self._first - 1], self.slopes[self._first :])
         opened = self.coordinates.opened()
         return Ends(self._seen, self._seen_slopes, self.best, first, self._limits, opened, least + bound, bound)
@@ -260,13 +260,6 @@ def inverse(slopes: Array) -> tuple[Array, bool]:
         return np.full((size, size), np.nan), False
     spread = axes.T / singular
     return spread @ spread.T, True
-
-
-def student(freedom: int) -> float:
-    """Student's t of the two-sided confidence."""
-    from scipy.special import stdtrit
-
-    return float(stdtrit(freedom, 0.5 + 0.5 * LEVEL))
 
 
 def _at_bound(problem: FitProblem, name: str, value: float, guess: Values) -> bool:

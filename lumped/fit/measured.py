@@ -9,13 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault
-from lumped.numbers import peak
+from lumped.numbers import Array, peak
 from lumped.result.gate import MeasuredPulse
 from lumped.result.history import History
 from lumped.result.noise import whiteness
 from lumped.result.score import POINTS, Curve
 
-Array = NDArray[np.float64]
 # A curve whose last force is at most this share of its peak has ended: after it the force is zero.
 ENDED = 0.05
 # How far beyond its end a longer contact is told from it, as a share of its length.

@@ -19,13 +19,12 @@ from lumped.fit.measured import Measured
 from lumped.fit.space import REACH, TOUCH, Space
 from lumped.laws._force_law import ForceLaw, bodies_of
 from lumped.laws._hereditary import HereditaryLaw, Solve, once
-from lumped.numbers import local
+from lumped.numbers import Array, local
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.solvers.point.contact import motion
 from lumped.solvers.point.track import PointTrack, peak_of
 
-Array = NDArray[np.float64]
 Values = Mapping[str, float]
 # How the peak answers to a stiffness, about: the first step of the root solve.
 PEAK_POWER = 0.4

@@ -94,7 +94,7 @@ class Ends:
         """
         found = {(i, side): self._end(i, side, self._start) for i in which for side in (-1.0, 1.0)}
         for (i, side), end in found.items():
-            far = _farthest([other.spot for other in found.values()], i, side)
+            far = max((other.spot for other in found.values()), key=lambda spot: side * float(spot.values[i]))
             if end.value is not None and self._beyond(i, side, far, end.spot) > 0.0:
                 found[i, side] = self._end(i, side, far)
         return {i: (found[i, -1.0], found[i, 1.0]) for i in which}
@@ -203,6 +203,13 @@ class Ends:
         return bool(held[:, depends].any())
 
 
+def student(freedom: int, level: float) -> float:
+    """Student's t of the two-sided confidence of a level."""
+    from scipy.special import stdtrit
+
+    return float(stdtrit(freedom, 0.5 + 0.5 * level))
+
+
 def open_side(low: float | None, high: float | None) -> str:
     """Where an interval has no end, "below" or "above"; empty where it has both."""
     return "below" if low is None else "above" if high is None else ""
@@ -212,10 +219,6 @@ def forward_slopes(of: Callable[[Array], Array], place: Array, highest: Array, l
     """How values (n,) change with a place (q,), (n, q): forward differences, backward at the `highest` place."""
     here, steps = of(place), np.where(place + length <= highest, length, -length)
     return np.array([(of(there) - here) / step for there, step in zip(place + np.diag(steps), steps, strict=True)]).T
-
-
-def _farthest(spots: Sequence[Spot], i: int, side: float) -> Spot:
-    return max(spots, key=lambda spot: side * float(spot.values[i]))
 
 
 def _cut(step: Array, longest: float) -> Array:

@@ -6,9 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
+from lumped.numbers import Array
 from lumped.result.folder import publish
 from lumped.result.history import ForceOverTime, History
 from lumped.result.result import Result
@@ -18,7 +16,6 @@ from lumped.schema.csv_file import write_csv
 from lumped.schema.json_file import plain, write_json
 from lumped.schema.shown import Picture, curves, html_table
 
-Array = NDArray[np.float64]
 SCHEMA, RECORD = "fe-contact/fit/1", "fit.json"
 LEVEL = 0.95  # of the intervals
 WIDTH = 12  # look: of a parameter's name

@@ -13,7 +13,6 @@ from itertools import count, product
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped import laws
 from lumped.errors import BadInput, Fault, NotReached
@@ -38,6 +37,7 @@ from lumped.laws._force_law import between_masses, bodies_of
 from lumped.laws._parameters import Parameters
 from lumped.laws._power_law import spring_contact_time, spring_of_peak
 from lumped.laws.base import check_mass, simulate
+from lumped.numbers import Array
 from lumped.progress import Progress, silent
 from lumped.result.history import History
 from lumped.result.score import Curve
@@ -62,7 +62,6 @@ RATIOS, TIMES = (0.3, 2.0), (0.1, 1.0, 10.0)
 # Of an elastic modulus: where an echo lets the force jump, a search finds its time from one side only.
 ASIDE = (1.0, 0.99, 1.01)
 Values = dict[str, float]
-Array = NDArray[np.float64]
 # Of the differences: far above what an impact's integration errs by, and the search needs no better slopes.
 DIFFERENCE = 1e-4
 TOLERANCE, MOST_STEPS = 1e-10, 80  # of the search: relative changes that end it; work: its evaluations
@@ -97,7 +96,7 @@ def search(
     certainty = certainty_of(problem, found.values, found.guess)
     fitted = space.scene_at(found.values)
     result = simulate(laws.get(law).of(fitted), fitted, RESULT_TOLERANCE)
-    history = delayed(result.history, space.touch(found.values))
+    history = replace(result.history, time=result.history.time + space.touch(found.values))
     failed = () if result.converged else (result.message,)
     return Fit(
         law=law,
@@ -131,11 +130,6 @@ def _held(space: Space) -> tuple[str, ...]:
         return ()
     cure = f"to find {'them' if len(names) > 1 else 'it'} too: --free {','.join((*space.free, *names))}"
     return (f"{', '.join(names)} held as the scene has {'them' if len(names) > 1 else 'it'}; {cure}",)
-
-
-def delayed(history: History, touch: float) -> History:
-    """The history on a clock on which the bodies meet at `touch`, s."""
-    return replace(history, time=history.time + touch)
 
 
 def best(problem: FitProblem) -> Found:

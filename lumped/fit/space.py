@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-from numpy.typing import NDArray
-
 from lumped import laws
 from lumped.errors import BadInput, Fault, nearest
 from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS
@@ -18,7 +15,6 @@ from lumped.scene.tables import LawChoice
 from lumped.schema import Table
 from lumped.schema.keys import Number
 
-Array = NDArray[np.float64]
 Bounds = Mapping[str, tuple[float, float]]
 # The touch on the curve's clock, s: the one parameter that may be negative.
 TOUCH = "touch"

@@ -18,7 +18,7 @@ from lumped.identify.record import Interval as Interval
 from lumped.schema import Table
 
 if TYPE_CHECKING:
-    from lumped.identify.correction import Reference
+    from lumped.identify.search import Reference
     from lumped.result.score import Curve
 
 HIGHEST = 1e12  # safety: Hz, beyond any instrument's
@@ -42,17 +42,16 @@ def identify(
     tables; `overrides`: keys set in it. `own`: by a curve's name the keys that its impact has of its own, as
     {"striker.velocity": 0.3}. `corner`: of the instrument's low pass of first order, Hz, where no silence tells the
     noise's colour; `low_pass`: the same, where the force has passed it too, of rows in equal steps. `each`: every curve
-    alone too. `sample`: how many draws of the posterior, see :mod:`lumped.identify.ensemble`. `reference`: the history
+    alone too. `sample`: how many draws of the posterior, see :mod:`lumped.identify.certainty`. `reference`: the history
     of a scene by another method, as finite elements, which corrects the law near the most likely place, see
-    :mod:`lumped.identify.correction`. Raises BadInput, and NotReached where no impact of the scene comes near the
+    :mod:`lumped.identify.search`. Raises BadInput, and NotReached where no impact of the scene comes near the
     curves.
     """
     # what a search needs is imported with the first one: most work needs none
     from lumped.fit.space import TOUCH
     from lumped.identify.answer import answer
-    from lumped.identify.correction import correct
     from lumped.identify.keys import SceneFile
-    from lumped.identify.search import search
+    from lumped.identify.search import correct, search
 
     if not curves:
         raise BadInput(Fault("curves", "", "none; accepted: at least one measured history"))

@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.fit.profile import open_side
-from lumped.identify.ensemble import posterior_of
+from lumped.identify.certainty import LikelihoodProfile, Valley, correlation_of, posterior_of, quantile
 from lumped.identify.histories import RTOL, Histories, Noise
-from lumped.identify.profile import LikelihoodProfile, Valley, correlation_of, quantile
 from lumped.identify.record import ByReference, FittedCurve, Identified, Interval, Posterior, ToldValley, hull
 from lumped.laws import ting
 from lumped.laws.base import simulate

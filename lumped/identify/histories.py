@@ -6,9 +6,8 @@ pulse's width. A touch costs no impact: the same force is read at other times.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,12 +31,6 @@ MOST_ROWS = 1200  # work: a smooth pulse is told by as many means of neighbourin
 BEFORE, AFTER = 2.0, 3.0  # work: widths of silence that are kept around the pulse
 MARGIN = 0.1  # of the width, before touch and after the end: neither contact nor silence
 EVEN = 0.01  # of a step: rows are as even as that where noise has a colour
-
-
-class Force(Protocol):
-    """A force at times since touch, N, both (n,)."""
-
-    def __call__(self, time: Array) -> Array: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,9 +67,9 @@ class Samples:
 
 @dataclass(frozen=True)
 class Impact:
-    """One impact by Ting's law: its force since touch, and when it ends, s."""
+    """One impact by Ting's law: its force, N, at times since touch, s, both (n,); and when it ends, s."""
 
-    force: Force
+    force: Callable[[Array], Array]
     end: float
 
     @classmethod

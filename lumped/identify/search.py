@@ -1,28 +1,36 @@
-"""The most likely parameters, and all valleys of the likelihood that count.
+"""The most likely parameters, and all valleys of the likelihood that count; corrected where a nearer law says more.
 
 One history can be told by a fast relaxation as well as by a slow one: searches begin from both, and an interval holds
 every valley in which the curves are about as likely.
+
+The cheap law is corrected near the most likely place by a method that is nearer to the truth, as finite elements. What
+the reference's force is beyond the law's changes slowly with the parameters: taken at one place it is added to the
+law's force everywhere, the least squares go on from there by the law's own slopes, and it is taken anew where they end,
+until they stay. A history of the reference is asked for every curve in every round, no more.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from lumped.errors import BadInput, Fault, NotReached
 from lumped.fit.profile import REACHED
-from lumped.identify.histories import Histories, Noise, Samples
+from lumped.identify.certainty import Valley, quantile, untold
+from lumped.identify.histories import Correction, Histories, Noise, Samples
 from lumped.identify.keys import FREE, FreeKey, SceneFile, free_keys, starting_places
-from lumped.identify.profile import Valley, quantile, untold
+from lumped.identify.record import ByReference, Shift
 from lumped.laws import ting
 from lumped.laws._hereditary import problem_of
 from lumped.laws.base import check_mass
 from lumped.numbers import Array
+from lumped.result.history import History
 from lumped.result.noise import colour_of, colour_of_corner, whitened
 from lumped.result.score import Curve
+from lumped.scene.scene import Scene
 
 TOLERANCE, MOST_STEPS = 1e-6, 60  # of the least squares: relative changes that end it; work
 SCOUTED = 1e-3  # the same of the searches that look for valleys
@@ -34,6 +42,11 @@ POWER = 2.5  # a peak grows as the modulus to the power 2/5, of Hertz's law; oth
 GUESSED = 0.02  # of the peak: a noise to begin with
 REWEIGHED = 2  # times that the noise is told from the residuals and the search goes on from there
 SILENT = 40  # rows that tell a noise's colour
+ROUNDS = 6  # work: each asks the reference for every curve
+STAYS = 0.1  # of half an interval, or of the reference's bars: a place that moves less has been found
+
+# The history of a scene by another method, with bars. Raises BadInput, NotReached.
+Reference = Callable[[Scene], History]
 
 
 def search(
@@ -55,7 +68,8 @@ def search(
         problem_of(scene)
     if low_pass and any(one.step is None for one in samples):
         raise BadInput(Fault("low_pass", "", "not known of rows in uneven steps; accepted: equal steps"))
-    begun = Histories(file, keys, samples, tuple(_first_noise(one, corner) for one in samples), low_pass)
+    noises = tuple(Noise(GUESSED * one.peak, _colour(one, None, corner)) for one in samples)
+    begun = Histories(file, keys, samples, noises, low_pass)
     if begun.freedom <= 0:
         reason = f"{begun.rows} rows for {begun.size} numbers; accepted: more rows than numbers sought"
         raise BadInput(Fault(next(iter(curves)), "", reason))
@@ -66,10 +80,6 @@ def _check_own(keys: Sequence[FreeKey], own: Mapping[str, Mapping[str, object]])
     both = {name for one in own.values() for name in one} & {one.key for one in keys}
     if both:
         raise BadInput(Fault(FREE, name, "free, and a curve's own; accepted: one of them") for name in sorted(both))
-
-
-def _first_noise(one: Samples, corner: float | None) -> Noise:
-    return Noise(GUESSED * one.peak, _colour(one, None, corner))
 
 
 def _colour(one: Samples, silent: Array | None, corner: float | None) -> Array:
@@ -221,3 +231,77 @@ def descended(histories: Histories, start: Array, limits: Array, tolerance: floa
         max_nfev=MOST_STEPS,
     )
     return Valley(np.asarray(found.x), limits)
+
+
+@dataclass(frozen=True, eq=False)
+class Corrected:
+    """The histories with the corrections, the most likely place with them, and what is said of both."""
+
+    histories: Histories
+    valley: Valley
+    told: ByReference
+
+
+def correct(histories: Histories, valleys: Sequence[Valley], corner: float | None, reference: Reference) -> Corrected:
+    """The likeliest valley with a law that the reference has corrected there. Raises NotReached where it moves on."""
+    valley = valleys[0]
+    for runs in range(1, ROUNDS + 1):
+        there, found = _round(histories, valley, corner, reference)
+        step, bars = np.abs(found.sought - valley.sought), _bars(there, found.sought)
+        valley = found
+        if runs > 1 and np.all(step <= STAYS * np.maximum(bars, _half_widths(there, found.sought))):
+            told = _told(histories, valleys, there, found, bars, runs * len(there.samples))
+            return Corrected(there, found, told)
+    reason = f"the parameters still move after {ROUNDS} rounds of reference histories"
+    raise NotReached(f"{reason}; cure: fewer free keys, or a curve that tells them better")
+
+
+def _round(
+    histories: Histories, valley: Valley, corner: float | None, reference: Reference
+) -> tuple[Histories, Valley]:
+    """The histories with what the reference says in a valley, and where their least squares end."""
+    places = valley.sought[: len(histories.keys)]
+    pairs = zip(histories.scenes(places), histories.impacts(places) or (), strict=True)
+    corrections = tuple(Correction.of(reference(scene), impact) for scene, impact in pairs)
+    there = replace(histories, corrections=corrections, known={})
+    found = descended(there, valley.sought, valley.limits)
+    there = reweighed(there, found.sought, corner)
+    return there, descended(there, found.sought, valley.limits)
+
+
+def _bars(histories: Histories, sought: Array) -> Array:
+    """How far the reference's bars can move what is sought, (size,): sum_k |(J^T J)^-1 J^T|_ik bar_k, no less."""
+    bars = list[Array]()
+    every = zip(histories.samples, histories.noises, histories.corrections, histories.touches(sought), strict=True)
+    for one, noise, by, touch in every:
+        bar = np.interp(one.time - touch, by.time, by.bar, 0.0, 0.0)
+        bars.append(_largest(histories.seen(bar, noise), noise.colour) / noise.deviation)
+    return np.asarray(np.abs(np.linalg.pinv(histories.slopes(sought))) @ np.concatenate(bars))
+
+
+def _largest(bar: Array, colour: Array) -> Array:
+    """The most that is new in every row of a column within its bar, as :func:`lumped.result.noise.whitened` sees it."""
+    rows = bar.size - colour.size
+    found = bar[colour.size :].copy()
+    for lag, a in enumerate(colour.tolist(), start=1):
+        found += abs(a) * bar[colour.size - lag : colour.size - lag + rows]
+    return found
+
+
+def _half_widths(histories: Histories, sought: Array) -> Array:
+    """Of the intervals, by the linearized residuals, (size,)."""
+    spread = np.linalg.pinv(histories.slopes(sought))
+    return np.asarray(math.sqrt(quantile(histories)) * np.linalg.norm(spread, axis=1))
+
+
+def _told(
+    histories: Histories, valleys: Sequence[Valley], there: Histories, found: Valley, bars: Array, runs: int
+) -> ByReference:
+    keys, before, after = histories.keys, valleys[0].sought.tolist(), found.sought.tolist()
+    moved = {
+        key.name: Shift(key.at(old), key.at(new), 0.5 * (key.at(new + bar) - key.at(new - bar)))
+        for key, old, new, bar in zip(keys, before, after, bars.tolist(), strict=False)
+    }
+    pairs = zip(there.corrections, there.samples, strict=True)
+    error = max(float(np.abs(by.force).max()) / one.peak for by, one in pairs)
+    return ByReference(moved, error, runs, len(valleys) - 1)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from lumped.result.result import RULED_RELATIVE, UNITS, Quantity, Result, proven
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
 from lumped.schema import Table
+
+if TYPE_CHECKING:  # the row of springs needs numpy alone
+    from lumped.solvers.point.track import Outcome
 
 # Rounding of the sums behind a quantity, relative to it.
 ROUNDING = 1e-12
@@ -29,6 +32,7 @@ AROUND = np.linspace(0.0, 1.0, 17)
 # By these the values at AROUND give the square's coefficient of the parabola that fits them best.
 _EVEN = (AROUND - 0.5) ** 2 - np.mean((AROUND - 0.5) ** 2)
 BENDS = _EVEN / (_EVEN @ _EVEN)
+EQUAL = 1e-9  # rounding: peaks of several contacts that differ by less, relatively, are one height
 FINEST_ROWS = 1e-9  # work: a history is made no denser than this share of the peak force asks for
 # Two integrations may agree in one quantity by chance: its bar is at least this share of the history's (L2).
 LEAST_SHARE = 0.1
@@ -98,6 +102,23 @@ def values_of(
         "duration": time if separated else None,
         "restitution": -velocity / scene.velocity if separated else None,
         "impulse": impulse_of(scene, end, velocity, time, scene.end_time),
+    }
+
+
+def values_of_several(contacts: Sequence[Outcome], impulse: float | None) -> dict[str, float | None]:
+    """Those of contacts in a row: the largest of all, but duration and restitution of the first one.
+
+    Of peaks as high as one another, but for rounding, the first.
+    """
+    most = max(one.peak_force for one in contacts)
+    highest = next(one for one in contacts if one.peak_force >= (1.0 - EQUAL) * most)
+    return {
+        "peak_force": highest.peak_force,
+        "peak_time": highest.peak_time,
+        "peak_depth": max(one.peak_depth for one in contacts),
+        "duration": contacts[0].duration,
+        "restitution": contacts[0].restitution,
+        "impulse": impulse,
     }
 
 
@@ -217,7 +238,7 @@ def assemble(
     # The rows themselves add what linear interpolation errs by, less than the tolerance; the bar is for the
     # rows.
     history = History(times, depth, velocity, force, radius, np.full(times.size, force_error))
-    resolved = model or _small(scene.model)
+    resolved = model or small(scene.model)
     missed = unmet(quantities, tolerance)
     peak = quantities["peak_force"].value or 1.0
     return Result(
@@ -243,8 +264,8 @@ def assemble(
 
 
 @lru_cache(maxsize=16)  # of many impacts it is the same
-def _small(model: Model) -> Model:
-    """The model with small displacements and without inertia."""
+def small(model: Model) -> Model:
+    """The model with small displacements, without inertia and without plastic flow."""
     return replace(model, inertia=False, kinematics="small", plasticity=False)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from lumped import laws
 from lumped.errors import BadInput, Fault
-from lumped.laws._assembly import Answer, assemble, bars, impulse_of
+from lumped.laws._assembly import Answer, assemble, bars, impulse_of, small, values_of_several
 from lumped.load_curves.base import LoadCurve
 from lumped.numbers import Array, Clock
 from lumped.result.history import End
@@ -35,8 +35,6 @@ END, END_COMPARED = 1e-11, 1e-8
 NO_BETTER = 0.5
 # Two marches may agree by chance.
 SAFETY = 2.0
-# Peaks of several contacts that differ by less, relatively, are one height: rounding makes more of a long march.
-EQUAL = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,8 +105,7 @@ class ForceLaw(PointLaw):
 
     def resolved(self, scene: Scene) -> Model:
         """The scene's model as this law has it: its stiffness stands for a parabola, and no body for waves."""
-        small = replace(scene.model, inertia=False, kinematics="small", plasticity=False)
-        return replace(small, profile="parabola") if scene.has_geometry else scene.model
+        return replace(small(scene.model), profile="parabola") if scene.has_geometry else scene.model
 
 
 def between_masses(name: str, scene: Scene) -> ForceLaw:
@@ -182,11 +179,13 @@ def _track(law: ForceLaw, scene: Scene, impacts: int, step_tolerance: float) -> 
 def _answer(law: ForceLaw, scene: Scene, track: PointTrack, outcomes: Sequence[Outcome]) -> Answer:
     """What a march says."""
     moved, until = track.motion, _until(law, scene)
+    last = moved.contacts[-1]
+    impulse = impulse_of(scene, moved.end, last.last.rate, last.end_time, until)
     said = _fewer(scene, len(outcomes)) if moved.end is End.SEPARATED else moved.end.value
     return Answer(
         track.rows,
         _ImpactColumns(law, track),
-        _values(scene, moved, outcomes, until),
+        values_of_several(outcomes, impulse),
         moved.end,
         _energy(law, scene, moved),
         "; ".join(part for part in (law.source, said) if part),
@@ -220,21 +219,6 @@ class _ImpactColumns(NamedTuple):
 
     def _pushing(self, force: Array) -> Array:
         return np.maximum(force, 0.0) if self.law.exit == "force" else force
-
-
-def _values(scene: Scene, moved: PointMotion, outcomes: Sequence[Outcome], until: float) -> Mapping[str, float | None]:
-    # of peaks as high as one another, but for rounding, the first
-    most = max(outcome.peak_force for outcome in outcomes)
-    highest = next(outcome for outcome in outcomes if outcome.peak_force >= (1.0 - EQUAL) * most)
-    last = moved.contacts[-1]
-    return {
-        "peak_force": highest.peak_force,
-        "peak_time": highest.peak_time,
-        "peak_depth": max(outcome.peak_depth for outcome in outcomes),
-        "duration": outcomes[0].duration,
-        "restitution": outcomes[0].restitution,
-        "impulse": impulse_of(scene, moved.end, last.last.rate, last.end_time, until),
-    }
 
 
 def _energy(law: ForceLaw, scene: Scene, moved: PointMotion) -> dict[str, float | None]:

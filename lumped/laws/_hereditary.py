@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar, Protocol
@@ -17,9 +17,8 @@ from lumped.result.history import End
 from lumped.result.result import Result, meets
 from lumped.scene.geometry import stiffest_impact
 from lumped.scene.scene import Scene
-from lumped.solvers.hereditary.approach import Approach
 from lumped.solvers.hereditary.closing import Closing
-from lumped.solvers.hereditary.march import Settings
+from lumped.solvers.hereditary.march import Approach, Settings
 from lumped.solvers.hereditary.path import HereditaryPhase
 from lumped.solvers.hereditary.pieces import Followed, alone
 from lumped.solvers.hereditary.problem import Hereditary
@@ -127,10 +126,8 @@ class HereditaryLaw(ABC):
         return alone(self.simulation(scene, tolerance))
 
 
-class Inexact(Protocol):
-    """What a law itself leaves open of an integration: errors of quantities, and of the force, N; SI."""
-
-    def __call__(self, problem: Hereditary, course: Course) -> tuple[dict[str, float], float]: ...
+# What a law itself leaves open of an integration: errors of quantities, and of the force, N; SI.
+Inexact = Callable[[Hereditary, Course], tuple[dict[str, float], float]]
 
 
 def simulation(

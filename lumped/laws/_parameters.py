@@ -156,12 +156,12 @@ class Parameters:
             self.faults += [Fault(self.scene.source, "law.e", fault.message) for fault in bad.faults]
             return 0.0
 
-    def dashpot(self, k: float, family: Family) -> float:
-        """c, N s/m, of the dashpot beside a spring k, N/m: given, or of xi "(7)", or of e at the law's exit."""
-        kind, value = self.damping(("xi", "c"))
+    def linear(self, family: Family) -> Table:
+        """k, N/m, and c, N s/m, of a dashpot beside it: given, or of xi "(7)", or of e at the law's exit."""
+        k, (kind, value) = self.stiffness(1.0), self.damping(("xi", "c"))
         if kind == "e":
             value = self.meeting(family, value)
-        return value if kind == "c" else 2.0 * value * math.sqrt(k * self.scene.reduced_mass)
+        return {"k": k, "c": value if kind == "c" else 2.0 * value * math.sqrt(k * self.scene.reduced_mass)}
 
     def oscillator(self, family: Family, key: str, unit: float = 1.0) -> Table:
         """alpha, k and c = unit times the damping called `key` times sqrt(m k), N s/m^((alpha + 1)/2).

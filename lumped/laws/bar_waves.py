@@ -13,17 +13,17 @@ from typing import ClassVar
 import numpy as np
 
 from lumped.errors import BadInput, Fault
-from lumped.laws._assembly import Answer, assemble, bars
+from lumped.laws._assembly import Answer, assemble, bars, values_of_several
 from lumped.laws.base import LawKind, check_geometry
-from lumped.numbers import Array, Clock
+from lumped.numbers import Array, Clock, bisected
 from lumped.result.history import End
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.shapes._block import Block
 from lumped.solvers.bar import Bounces, StraightBar, bounces
+from lumped.solvers.point.track import Outcome
 
 BEFORE = 1e-12  # rounding: share of a time, just before a jump of the force
-EQUAL = 1e-9  # rounding: peaks of several contacts that differ by less, relatively, are one height
 SAFETY = 2.0  # safety: of the bars, over rounding
 
 
@@ -125,22 +125,21 @@ class _Fall:
         """The force alone, N; zero from the end on."""
         return np.where(times < self.end, np.maximum(self.motion.force(times), 0.0), 0.0)
 
-    def contact(self, start: float, end: float) -> dict[str, float | None]:
-        """What one contact says, in SI units."""
+    def contact(self, start: float, end: float) -> Outcome:
+        """What one contact comes to."""
         inside = self.knots[(self.knots >= start) & (self.knots < end)]
         rows = np.unique(np.append(inside, np.append(inside[1:], end) * (1.0 - BEFORE)))
-        force = self.force(rows)
-        velocity, away = self(np.array([start, end]))[1]
+        force, (velocity, away) = self.force(rows), self(np.array([start, end]))[1].tolist()
         parted = end < self.motion.end
-        return {
-            "start": start,
-            "duration": end - start if parted else None,
-            "velocity": float(velocity),
-            "restitution": float(-away / velocity) if parted else None,
-            "peak_force": float(force.max()),
-            "peak_time": float(rows[force.argmax()]),
-            "peak_depth": self._deepest(start, end),
-        }
+        return Outcome(
+            start=start,
+            duration=end - start if parted else None,
+            velocity=velocity,
+            restitution=-away / velocity if parted else None,
+            peak_force=float(force.max()),
+            peak_time=float(rows[force.argmax()]),
+            peak_depth=self._deepest(start, end),
+        )
 
     def _deepest(self, start: float, end: float) -> float:
         """Largest depth between two times, m: at a knot, or where the velocity is zero between two."""
@@ -148,30 +147,19 @@ class _Fall:
         places = places[(places >= start) & (places <= end)]
         velocity = self(places)[1]
         turns = np.flatnonzero((velocity[:-1] > 0.0) & (velocity[1:] <= 0.0))
-        low, high = places[turns], places[turns + 1]
-        for _ in range(60):  # halved to rounding
-            middle = 0.5 * (low + high)
-            inward = self(middle)[1] > 0.0
-            low, high = np.where(inward, middle, low), np.where(inward, high, middle)
-        return float(self(np.concatenate([places, low]))[0].max())
+        deepest = [bisected(self._inward, *places[i : i + 2].tolist())[0] for i in turns]
+        return float(self(np.append(places, deepest))[0].max())
+
+    def _inward(self, time: float) -> bool:
+        return bool(self(np.array([time]))[1, 0] > 0.0)
 
 
 def _answer(scene: Scene, fall: _Fall) -> Answer:
     """What the waves say, in SI."""
     contacts = [fall.contact(*one) for one in fall.contacts]
-    most = max(one["peak_force"] or 0.0 for one in contacts)
-    hardest = next(one for one in contacts if (one["peak_force"] or 0.0) >= (1.0 - EQUAL) * most)  # the first of equals
     end, mass = fall.end, fall.motion.bar.mass
-    velocity = float(fall(np.array([end]))[1, 0])
-    depth = float(fall(np.array([end]))[0, 0])
-    values = {
-        "peak_force": hardest["peak_force"],
-        "peak_time": hardest["peak_time"],
-        "peak_depth": max(one["peak_depth"] or 0.0 for one in contacts),
-        "duration": contacts[0]["duration"],
-        "restitution": contacts[0]["restitution"],
-        "impulse": mass * (scene.velocity - velocity + scene.gravity * end),
-    }
+    depth, velocity = fall(np.array([end]))[:2, 0].tolist()
+    values = values_of_several(contacts, mass * (scene.velocity - velocity + scene.gravity * end))
     given, out = 0.5 * mass * scene.velocity**2 + mass * scene.gravity * depth, 0.5 * mass * velocity**2
     stored = fall.motion.energy(end) - out
     energy = {"in": given, "out": out, "stored": stored, "viscous": 0.0, "residual": given - out - stored}
@@ -180,7 +168,7 @@ def _answer(scene: Scene, fall: _Fall) -> Answer:
     said = [] if ending is End.SEPARATED else [ending.value]
     if ending is End.SEPARATED and len(contacts) < fall.impacts:
         said.append(f"{len(contacts)} of {fall.impacts} impacts: the bar did not meet the plane again before the end")
-    told = tuple(contacts) if scene.motion.impacts > 1 else ()
+    told = tuple(one._asdict() for one in contacts) if scene.motion.impacts > 1 else ()
     return Answer(rows, fall, values, ending, energy, "; ".join(said), contacts=told)
 
 

@@ -102,13 +102,6 @@ def check_mass(scene: Scene) -> None:
         raise BadInput(Fault(scene.source, "striker.mass", reason))
 
 
-def check(scene: Scene, name: str) -> None:
-    """Raise BadInput for a scene without geometry, and for several impacts, which need a memory between them."""
-    check_geometry(scene, name)
-    check_half_space(scene, name)
-    scene.check_single(name)
-
-
 def waves(scene: Scene) -> str:
     """What an elastic law of small displacements without inertia leaves out of a scene, where that has any of it."""
     if scene.model.finite:

@@ -29,16 +29,14 @@ from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
 from lumped.schema.keys import Choice, Key, keys_of
-from lumped.solvers.hereditary.approach import approach
 from lumped.solvers.hereditary.closing import Closing, close
-from lumped.solvers.hereditary.march import Settings
+from lumped.solvers.hereditary.march import Settings, approach
 from lumped.solvers.hereditary.path import HereditaryPhase, Path, SinceTouch, UntilEnd
 from lumped.solvers.hereditary.pieces import DEPTH, Followed
 from lumped.solvers.hereditary.problem import Hereditary
 from lumped.solvers.point.bodies import TINY, Bodies, Dent, Stage, State, Step
 from lumped.solvers.point.memory import RULES, FreeSurface, HeldSurface, HereditaryLoad, StepLoad, rule_of
-from lumped.solvers.point.phase import NODES
-from lumped.solvers.radau import through_zero
+from lumped.solvers.radau import NODES, through_zero
 
 ROUGH, FINE = 1e-3, 1e-6  # tolerances of scales
 FORGOTTEN = 1e-12  # rounding: of its load where contact ended, what a surface has still to creep back
@@ -72,10 +70,6 @@ class HereditaryForce(ForceLaw):
     def remembered(self, depth: Array) -> tuple[float, ...]:
         """The memories at the end of the step."""
         return tuple(self._step.memories(depth)[:, -1].tolist())
-
-    def memories_within(self, start: State, length: float, depth: Array) -> Array:
-        """The memories at the points of a step, shape (K, s), m2, from the depths there."""
-        return StepLoad.of(self.load, start.memory, length, NODES).memories(depth)
 
     def force(self, depth: Real, rate: Real, stage: Stage) -> Real:
         """F at the points of the step, N."""

@@ -30,8 +30,7 @@ class Kelvin(OscillatorDamped):
 def of(scene: Scene) -> Kelvin:
     """The law for a scene. Raises BadInput."""
     given = Parameters(scene, Kelvin.name)
-    k = given.stiffness(1.0)
-    return Kelvin(k=k, c=given.dashpot(k, FAMILY), **given.common())
+    return Kelvin(**given.linear(FAMILY), **given.common())
 
 
 def anagnostopoulos(e: float) -> float:

@@ -29,8 +29,7 @@ class Mahmoud(OscillatorDamped):
 def of(scene: Scene) -> Mahmoud:
     """The law for a scene. Raises BadInput."""
     given = Parameters(scene, Mahmoud.name)
-    k = given.stiffness(1.0)
-    return Mahmoud(k=k, c=given.dashpot(k, FAMILY), **given.common())
+    return Mahmoud(**given.linear(FAMILY), **given.common())
 
 
 def mahmoud_jankowski(e: float) -> float:

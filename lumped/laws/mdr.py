@@ -11,7 +11,7 @@ import numpy as np
 
 from lumped.errors import BadInput, Fault
 from lumped.laws._assembly import Answer, assemble, bars, values_of, wider
-from lumped.laws.base import LawKind, check, waves
+from lumped.laws.base import LawKind, check_geometry, check_half_space, waves
 from lumped.numbers import Array, Clock, local, peak
 from lumped.result.history import End
 from lumped.result.result import Result, largest_bar, meets
@@ -107,7 +107,9 @@ class SpringRow:
 
 def of(scene: Scene) -> SpringRow:
     """The law for a scene: every half-space has it. Raises BadInput without geometry, and for a fixed contact area."""
-    check(scene, SpringRow.name)
+    check_geometry(scene, SpringRow.name)
+    check_half_space(scene, SpringRow.name)
+    scene.check_single(SpringRow.name)
     if scene.profile.flat_radius > 0.0:
         reason = "its springs touch all at once; accepted: ting"
         raise BadInput(Fault(scene.source, "striker.shape", f"{scene.profile.name}: {reason}"))

@@ -16,7 +16,7 @@ from lumped.result.history import End
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.schema import Table
-from lumped.solvers.rod import LONGEST, FlatImpact, RodScales, TippedImpact, Waves
+from lumped.solvers.rod import LONGEST, FlatImpact, TippedImpact, Waves
 from lumped.targets.rod import Rod
 
 COARSEST, FINEST, FINER = 1e-6, 1e-12, 1e-3  # of the tolerance, asked of every step
@@ -81,7 +81,7 @@ def _impact(scene: Scene, rtol: float, longest: float) -> FlatImpact | TippedImp
     if shape.fixed_radius is not None:
         return FlatImpact(waves, mass, velocity, scene.gravity, until)
     modulus = shape.modulus(scene.geometry.material).relaxed
-    curve, scales = shape.load_curve, shape.hertz_impact(modulus, mass, velocity)
+    curve, elastic = shape.load_curve, shape.hertz_impact(modulus, mass, velocity)
     return TippedImpact(
         waves=waves,
         force=lambda dent: modulus * curve.force(dent),
@@ -89,7 +89,8 @@ def _impact(scene: Scene, rtol: float, longest: float) -> FlatImpact | TippedImp
         velocity=velocity,
         gravity=scene.gravity,
         until=until,
-        scales=RodScales(scales.depth, scales.duration),
+        depth=elastic.depth,
+        time=elastic.duration,
         rtol=rtol,
         longest=longest,
     )

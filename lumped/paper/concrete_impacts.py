@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault
 from lumped.laws import correspondence
 from lumped.materials import Material
 from lumped.materials.networks import sls
+from lumped.numbers import Array
 from lumped.paper.given import Concrete, Examples
 from lumped.paper.value import Value, closed, duration, peak, read
 from lumped.result.history import History
@@ -27,7 +27,6 @@ from lumped.shapes import Sphere
 TOLERANCE = 1e-6  # of the impacts by the correspondence law
 # The fit takes the printed moduli as contact moduli, so Poisson's ratio plays no part.
 NU = 0.0
-Array = NDArray[np.float64]
 
 
 @cache

@@ -13,7 +13,7 @@ from lumped.materials.networks import elastic, sls
 from lumped.materials.radiation import Pulse
 from lumped.paper.concrete_impacts import proposed
 from lumped.paper.given import Concrete, Examples, Steel
-from lumped.paper.ring_impacts import ROUNDING, measure, with_ring
+from lumped.paper.ring_impacts import ROUNDING, measure, measures
 from lumped.paper.value import Value, Values, read
 from lumped.result.model_ledger import Peak, finite_strain, model_ledger
 from lumped.result.result import Result
@@ -86,8 +86,8 @@ def ring_moved(examples: Examples) -> Values:
 
 def _ring_peak(examples: Examples) -> Peak:
     """Of the first contact with both masses displaced, which no rod touches wider than its radius."""
-    measures = with_ring(examples.ptmd, examples.ring, "both")
-    numbers = [measure(measures, name).value for name in ("peak_force", "peak_depth", "first_contact_duration")]
+    found = measures(examples.ptmd, examples.ring)
+    numbers = [measure(found, name).value for name in ("peak_force", "peak_depth", "first_contact_duration")]
     return Peak(numbers[0], numbers[1], 0.5 * examples.ring.rod_diameter, numbers[2])
 
 

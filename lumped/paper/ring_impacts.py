@@ -9,20 +9,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault, NotReached
 from lumped.materials.networks import sls
 from lumped.materials.relaxation import Relaxation
+from lumped.numbers import Array
 from lumped.paper.given import Examples, Ptmd, RingLining
 from lumped.paper.value import MILLI, Value
 from lumped.ptmd import Measures, Oscillator, PoundingDamper, PtmdRing, Start, simulate
 
-Array = NDArray[np.float64]
 SAMPLES = 400  # work: times among which the first separation is looked for
 # The damper's path is exact to rounding, which some fifty contacts carry on.
 ROUNDING = 1e-9
@@ -85,27 +84,26 @@ def _first_fall(function: Callable[[float], float], last: float) -> float:
 
 
 @cache
-def with_ring(ptmd: Ptmd, lining: RingLining, start: str) -> Measures:
-    """The pounding damper; `start`: "both" masses or the "structure" alone displaced. Raises BadInput, NotReached."""
-    ring = PtmdRing(ptmd.gap, stiffness(lining, lining.nu), 1.0)
-    return _measures(ptmd, PoundingDamper(_structure(ptmd), _damper(ptmd), ring), start)
+def measures(ptmd: Ptmd, lining: RingLining | None, start: str = "both", damped: bool = True) -> Measures:
+    """Of the pounding damper; without a `lining` of the damper alone, not `damped` of the structure alone.
+
+    `start`: "both" masses or the "structure" alone displaced. Raises BadInput, NotReached.
+    """
+    if start not in STARTS:
+        raise BadInput(Fault("free vibration", "start", f"{start!r}; accepted: {', '.join(STARTS)}"))
+    damper = Oscillator(ptmd.m2, ptmd.k2, ptmd.c2) if damped else None
+    ring = PtmdRing(ptmd.gap, stiffness(lining, lining.nu), 1.0) if lining else None
+    system = PoundingDamper(Oscillator(ptmd.m1, ptmd.k1, ptmd.c1), damper, ring)
+    released = Start.both(ptmd.displacement) if start == "both" else Start.structure(ptmd.displacement)
+    found = simulate(system, released, ptmd.end_time, ptmd.window)
+    if abs(found.energy.residual) > MOST_RESIDUAL * found.energy.initial:
+        raise NotReached("free vibration: the energy balance is open; a shorter ptmd.end_time may close it")
+    return found.measures
 
 
-@cache
-def without_ring(ptmd: Ptmd, start: str) -> Measures:
-    """The damper without pounding."""
-    return _measures(ptmd, PoundingDamper(_structure(ptmd), _damper(ptmd)), start)
-
-
-@cache
-def without_damper(ptmd: Ptmd) -> Measures:
-    """The structure alone."""
-    return _measures(ptmd, PoundingDamper(_structure(ptmd)), "structure")
-
-
-def measure(measures: Measures, name: str) -> Value:
+def measure(found: Measures, name: str) -> Value:
     """One of the measures, SI. Raises NotReached where it is undefined."""
-    number = measures.to_dict()[name]
+    number = asdict(found)[name]
     if number is None:
         raise NotReached(f"free vibration: {name} is undefined; a longer ptmd.end_time may define it")
     return Value(float(number), ROUNDING * abs(float(number)))
@@ -123,17 +121,17 @@ def mass_in_dashpot(p: Ptmd) -> float:
 
 def pounding(e: Examples, name: str, start: str = "both") -> Value:
     """A measure with the pounding damper."""
-    return measure(with_ring(e.ptmd, e.ring, start), name)
+    return measure(measures(e.ptmd, e.ring, start), name)
 
 
 def plain(e: Examples, name: str) -> Value:
     """A measure with the damper and without its ring."""
-    return measure(without_ring(e.ptmd, "both"), name)
+    return measure(measures(e.ptmd, None), name)
 
 
 def alone(e: Examples, name: str) -> Value:
     """A measure of the structure without a damper."""
-    return measure(without_damper(e.ptmd), name)
+    return measure(measures(e.ptmd, None, "structure", damped=False), name)
 
 
 def decay(e: Examples, vibration: Callable[[Examples, str], Value]) -> list[Value]:
@@ -150,21 +148,3 @@ def impacts(e: Examples) -> list[float]:
     found = [impact(stiffness(e.ring, nu), mass) for nu in (min(e.ring.nus), max(e.ring.nus))]
     times = [MILLI * one.duration for one in found]
     return [*(one.restitution for one in found), *times, *(MILLI * one.depth_per_velocity for one in found)]
-
-
-def _measures(ptmd: Ptmd, system: PoundingDamper, start: str) -> Measures:
-    if start not in STARTS:
-        raise BadInput(Fault("free vibration", "start", f"{start!r}; accepted: {', '.join(STARTS)}"))
-    released = Start.both(ptmd.displacement) if start == "both" else Start.structure(ptmd.displacement)
-    found = simulate(system, released, ptmd.end_time, ptmd.window)
-    if abs(found.energy.residual) > MOST_RESIDUAL * found.energy.initial:
-        raise NotReached("free vibration: the energy balance is open; a shorter ptmd.end_time may close it")
-    return found.measures
-
-
-def _structure(ptmd: Ptmd) -> Oscillator:
-    return Oscillator(ptmd.m1, ptmd.k1, ptmd.c1)
-
-
-def _damper(ptmd: Ptmd) -> Oscillator:
-    return Oscillator(ptmd.m2, ptmd.k2, ptmd.c2)

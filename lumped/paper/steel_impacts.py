@@ -8,16 +8,15 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped import laws, restitution
 from lumped.errors import NotReached
-from lumped.laws import LawKind
 from lumped.laws._power_law import spring_of_peak
 from lumped.laws.correspondence import HereditaryForce, law_of
 from lumped.materials import Material
 from lumped.materials.networks import elastic, sls
 from lumped.materials.relaxation import Relaxation
+from lumped.numbers import Array
 from lumped.paper.given import Examples, RingLining, Steel
 from lumped.paper.value import (
     MICRO,
@@ -41,8 +40,6 @@ from lumped.solvers.point.contact import Contact, PointMotion, contact
 from lumped.solvers.point.memory import FreeSurface
 from lumped.solvers.point.track import Outcome, PointTrack, outcome_of
 
-Array = NDArray[np.float64]
-
 TOLERANCE = 1e-6  # of the impacts by the laws
 # Physics: of the depth in the elastic force, by law.
 EXPONENT = {"linear_spring": 1.0, "hertz": 1.5, "kelvin": 1.0, "jankowski": 1.5}
@@ -62,13 +59,13 @@ def scene(steel: Steel, contact_modulus: Relaxation) -> Scene:
 def solid(steel: Steel, R1: float, R2: float, law: str = "correspondence") -> Result:
     """The 3-parameter solid with E0 = E* of "(25)"; R2 in s. Raises NotReached."""
     own = scene(steel, sls.of_ratios(E0=steel.contact_modulus, R1=R1, R2=R2))
-    return _simulated(laws.get(law), own)
+    return _simulated(law, own)
 
 
 @cache
 def hertz(steel: Steel, contact_modulus: float) -> Result:
     """The nonlinear elastic model "(4)" with the stiffness of Table 1, E* in Pa."""
-    return _simulated(laws.get("hertz"), scene(steel, elastic.of(contact_modulus)))
+    return _simulated("hertz", scene(steel, elastic.of(contact_modulus)))
 
 
 @cache
@@ -217,11 +214,11 @@ def lowest_8a(e: Examples) -> Values:
 
 def _bare(steel: Steel, law: str, values: dict[str, float]) -> Result:
     own = Scene(None, steel.mass, steel.velocity, law=LawChoice(law, values), name=f"steel ball, {law}")
-    return _simulated(laws.get(law), own)
+    return _simulated(law, own)
 
 
-def _simulated(law: LawKind, own: Scene) -> Result:
-    return law.of(own).simulate(own, TOLERANCE)
+def _simulated(law: str, own: Scene) -> Result:
+    return laws.get(law).of(own).simulate(own, TOLERANCE)
 
 
 @dataclass(frozen=True)

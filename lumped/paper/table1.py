@@ -197,6 +197,31 @@ class RoundRow(TableRow):
     length_name = "radius"
 
 
+class HertzRow(TableRow):
+    """F = (4/3) sqrt(R) E* depth^(3/2) (Hertz 1882): half-spaces under paraboloids."""
+
+    alpha = 1.5
+
+    @property
+    def factor(self) -> float:
+        """(4/3) sqrt(R), m^(1/2)."""
+        return 4.0 / 3.0 * sqrt(self.length)
+
+
+class LineRow(TableRow):
+    """F = (pi/4) l E* depth, a heuristic (Popov 2010, ISBN 978-3-642-10802-0, section 5.2); `height` is l."""
+
+    height: float
+    alpha = 1.0
+    single = False
+    profile = "parabola"
+
+    @property
+    def factor(self) -> float:
+        """pi l/4, m."""
+        return 0.25 * pi * self.height
+
+
 @dataclass(frozen=True)
 class PunchRow(RoundRow):
     """F = 2 R E* depth (Boussinesq 1885)."""
@@ -221,7 +246,7 @@ class PunchRow(RoundRow):
 
 
 @dataclass(frozen=True)
-class SphereRow(RoundRow):
+class SphereRow(RoundRow, HertzRow):
     """F = (4/3) sqrt(R) E* depth^(3/2) (Hertz 1882): the paraboloid of the sphere's tip."""
 
     number = 4
@@ -229,13 +254,7 @@ class SphereRow(RoundRow):
     case = "rigid sphere to elastic plane"
     printed = ("(4/3) sqrt(R)", "E/(1-nu^2)")
     corrected = printed
-    alpha = 1.5
     validity = "depths far below R on a half-space: a sphere is steeper than its paraboloid"
-
-    @property
-    def factor(self) -> float:
-        """(4/3) sqrt(R), m^(1/2)."""
-        return 4.0 / 3.0 * sqrt(self.length)
 
     @property
     def contact(self) -> tuple[Shape, Target]:
@@ -244,7 +263,7 @@ class SphereRow(RoundRow):
 
 
 @dataclass(frozen=True)
-class CylinderRow(RoundRow):
+class CylinderRow(RoundRow, LineRow):
     """F = (pi/4) l E* depth, a heuristic (Popov 2010, ISBN 978-3-642-10802-0, section 5.2); `height` is l."""
 
     height: Along
@@ -253,19 +272,11 @@ class CylinderRow(RoundRow):
     case = "rigid cylinder to elastic plane (curvature surface contact)"
     printed = ("pi l/4", "E/(1-nu^2)")
     corrected = ("none: F/(E* depth) depends on the datum", "E/(1-nu^2)")
-    alpha = 1.0
     validity = "one depth of each layer or datum: where 2 ln(2 datum/b) - nu/(1-nu) = 4"
     correction = (
         "in plane strain the half-plane has no finite compliance: "
         "depth = F/(pi E* l) [2 ln(2 datum/b) - nu/(1-nu)] (Johnson 1985, section 5.6)"
     )
-    single = False
-    profile = "parabola"
-
-    @property
-    def factor(self) -> float:
-        """pi l/4, m."""
-        return 0.25 * pi * self.height
 
     @property
     def contact(self) -> tuple[Shape, Target]:
@@ -319,7 +330,7 @@ class PairRow(TableRow):
 
 
 @dataclass(frozen=True)
-class TwoSpheres(PairRow):
+class TwoSpheres(PairRow, HertzRow):
     """F = (4/3) sqrt(R) E* depth^(3/2), 1/R = 1/R_a + 1/R_b (Hertz 1882): two half-spaces under paraboloids."""
 
     number = 7
@@ -327,13 +338,7 @@ class TwoSpheres(PairRow):
     case = "elastic curvature surface to elastic curvature surface"
     printed = ("(4/3) sqrt(Ra Rb/(Ra+Rb))", "1/((1-nu_a^2)/E_a + (1-nu_b^2)/E_b)")
     corrected = printed
-    alpha = 1.5
     validity = "contacts far smaller than either sphere"
-
-    @property
-    def factor(self) -> float:
-        """(4/3) sqrt(R), m^(1/2)."""
-        return 4.0 / 3.0 * sqrt(self.length)
 
     @property
     def contact(self) -> tuple[Shape, Target]:
@@ -346,7 +351,7 @@ class TwoSpheres(PairRow):
 
 
 @dataclass(frozen=True)
-class TwoCylinders(PairRow):
+class TwoCylinders(PairRow, LineRow):
     """F = (pi/4) l E* depth, a heuristic (Popov 2010, ISBN 978-3-642-10802-0, section 5.2); `height` is l."""
 
     height: Along
@@ -355,19 +360,11 @@ class TwoCylinders(PairRow):
     case = "elastic cylinder to elastic cylinder (parallel contact)"
     printed = ("pi l/4", "1/((1-nu_a^2)/E_a + (1-nu_b^2)/E_b)")
     corrected = ("none: F/(E* depth) depends on where each cylinder is held", printed[1])
-    alpha = 1.0
     validity = "one depth of each way to hold the cylinders"
     correction = (
         "in plane strain no body has a compliance of its own: to the approach each adds F (1-nu^2)/(pi E l) "
         "[2 ln(2 datum/b) - nu/(1-nu)], its datum where it is held (Johnson 1985, section 5.6)"
     )
-    single = False
-    profile = "parabola"
-
-    @property
-    def factor(self) -> float:
-        """pi l/4, m."""
-        return 0.25 * pi * self.height
 
     @property
     def contact(self) -> tuple[Shape, Target]:

@@ -48,6 +48,14 @@ class LinearBodies:
         """What the force of each gap moves as one mass, kg, (m,)."""
         return np.asarray(1.0 / (self.rows**2 / self.mass).sum(axis=1))
 
+    def depths(self, states: Array) -> Array:
+        """Of the gaps, m, (..., m), negative where they are open, in states (..., 2 n)."""
+        return np.asarray(states[..., : self.mass.size] @ self.rows.T - self.distances)
+
+    def rates(self, states: Array) -> Array:
+        """Of the depths, m/s, (..., m), in states (..., 2 n)."""
+        return np.asarray(states[..., self.mass.size :] @ self.rows.T)
+
     def accelerations(self, states: Array, forces: Array) -> Array:
         """Total ones, m/s2, (..., n), of states (..., 2 n) and forces (..., m)."""
         n = self.mass.size

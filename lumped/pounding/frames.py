@@ -1,9 +1,14 @@
-"""Shear frames, two of them or one beside a wall, with gaps between their storeys.
+"""Shear frames, two of them or one beside a wall, with gaps between their storeys; and floors that have waves.
 
 M q'' + C q' + K q = -M 1 a(t) - R^T F: q are the displacements of the storeys relative to the ground, to the right; a
 row of R is +1 at the left and -1 at the right storey of a gap, so that R q - distance is its depth, and F >= 0 pushes
 both back. A wall moves with the ground. Waves of slabs follow the storeys in q, and every gap at a storey presses on
 those of its slab too.
+
+A slab is the floor of a storey as an elastic rod that is struck at one end, by its modes. With s from the struck end
+and q the mean displacement, u = q + sum_k q_k cos(k pi s/length): each mode is an oscillator of half the rod's mass,
+and a gap sees q + sum_k q_k. The storey's mass lies evenly along the rod and its columns pull evenly, so that columns
+and ground act on the mean alone.
 """
 
 from __future__ import annotations
@@ -11,18 +16,22 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Annotated, ClassVar
+from math import pi, sqrt
+from typing import Annotated, ClassVar, NamedTuple
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from lumped.errors import BadInput, Fault
 from lumped.numbers import Array
 from lumped.pounding.flow import LinearBodies
-from lumped.pounding.slabs import MOST_MODES, MOST_STOREYS, NO_MODES, SIDES, STOREY, Slab
-from lumped.schema.keys import Key, Number, Numbers, Record
+from lumped.schema.keys import Choice, Count, Key, Number, Numbers, Record
 
 ANY_LENGTH, ANY_SPEED = Number(-1e4, 1e4, "m"), Number(-1e4, 1e4, "m/s")
 DAMPINGS = ("damping_ratio", "rayleigh", "dashpot")
+MOST_STOREYS, MOST_MODES = 50, 200  # work: of one frame, of all slabs together
+SIDES = ("left", "right")
+STOREY = Count(1, MOST_STOREYS)
 
 
 def storeys(each: Number) -> Numbers:
@@ -184,7 +193,7 @@ class PoundingFrames:
     @cached_property
     def stiffness(self) -> Array:
         """K, N/m, shape (n, n)."""
-        return _blocks([frame.stiffness_matrix for frame in self.frames.values()])
+        return block_diag(*(frame.stiffness_matrix for frame in self.frames.values()))
 
     @cached_property
     def columns(self) -> Array:
@@ -194,12 +203,12 @@ class PoundingFrames:
     @cached_property
     def damping(self) -> Array:
         """C, N s/m, shape (n, n)."""
-        return _blocks([frame.damping_matrix for frame in self.frames.values()])
+        return block_diag(*(frame.damping_matrix for frame in self.frames.values()))
 
     @cached_property
     def to_drift(self) -> Array:
         """From displacements to drifts, each storey less the one below it, shape (n, n)."""
-        return _blocks([np.eye(frame.size) - np.eye(frame.size, k=-1) for frame in self.frames.values()])
+        return block_diag(*(np.eye(frame.size) - np.eye(frame.size, k=-1) for frame in self.frames.values()))
 
     @cached_property
     def bodies(self) -> LinearBodies:
@@ -210,8 +219,8 @@ class PoundingFrames:
         still, ends = np.zeros(mass.size), np.repeat(np.array(at, dtype=int), [one.mass.size for one in waves])
         return LinearBodies(
             np.append(self.mass, mass),
-            _blocks([self.stiffness, np.diag(stiffness)]),
-            _blocks([self.damping, np.diag(damping)]),
+            block_diag(self.stiffness, np.diag(stiffness)),
+            block_diag(self.damping, np.diag(damping)),
             np.hstack([self.rows, self.rows[:, ends]]),
             self.distances,
             np.concatenate([self.start[:n], still, self.start[n:], still]),
@@ -252,12 +261,50 @@ class PoundingFrames:
         return np.concatenate([*places, *speeds])
 
 
-def _blocks(matrices: list[Array]) -> Array:
-    """One matrix with these on its diagonal."""
-    size = sum(matrix.shape[0] for matrix in matrices)
-    whole, at = np.zeros((size, size)), 0
-    for matrix in matrices:
-        end = at + matrix.shape[0]
-        whole[at:end, at:end] = matrix
-        at = end
-    return whole
+class SlabModes(NamedTuple):
+    """Of shapes of a rod that are 1 at its struck end: mass, kg, stiffness, N/m, and damping, N s/m, each (n,)."""
+
+    mass: Array
+    stiffness: Array
+    damping: Array
+
+
+NO_MODES = SlabModes(np.zeros(0), np.zeros(0), np.zeros(0))
+
+
+@dataclass(frozen=True)
+class Slab(Record):
+    """The floor of one storey, whose whole mass it has: its area is mass/(density length). Raises BadInput."""
+
+    structure: Annotated[str, Key(Choice(SIDES), "which one it belongs to")]
+    storey: Annotated[int, Key(STOREY, "whose floor it is, the lowest is 1")]
+    length: Annotated[float, Key(Number(1e-3, 1e4, "m"), "from the struck end to the free one")]
+    modulus: Annotated[float, Key(Number(1.0, 1e15, "Pa"), "along it")]
+    density: Annotated[float, Key(Number(1e-3, 1e6, "kg/m3"), "with what it carries")]
+    damping_ratio: Annotated[float, Key(Number(0.0, 1.0), "of its modes")] = 0.0
+    modes: Annotated[int, Key(Count(4, MOST_MODES), "that are followed")] = 4
+    name: ClassVar[str] = "slab"
+
+    @property
+    def at(self) -> str:
+        """The name of its storey."""
+        return f"{self.structure}_{self.storey}"
+
+    @property
+    def passage(self) -> float:
+        """How long a wave takes along it, s."""
+        return self.length * sqrt(self.density / self.modulus)
+
+    def waves(self, mass: float, halvings: int = 0) -> SlabModes:
+        """Its modes, and all higher ones as one shape more: what each yields at the struck end under a steady force.
+
+        Of higher modes that is the sum of 1/(m_k w_k^2), and of 1/(m_k w_k^4) the kinetic energy that goes with it
+        (Rubin 1975, doi 10.2514/3.60497). `mass`: the storey's, kg; `halvings`: of the modes followed, two at most.
+        """
+        from scipy.special import zeta  # late: only slabs need it
+
+        first, count = pi / self.passage, self.modes >> halvings
+        yields, carries = (2.0 / (mass * first**power) * float(zeta(power, count + 1)) for power in (2, 4))
+        masses = np.append(np.full(count, 0.5 * mass), carries / yields**2)
+        stiffness = np.append(0.5 * mass * (first * np.arange(1.0, count + 1.0)) ** 2, 1.0 / yields)
+        return SlabModes(masses, stiffness, 2.0 * self.damping_ratio * np.sqrt(masses * stiffness))

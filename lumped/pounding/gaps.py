@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from lumped.laws._force_law import ForceLaw
 from lumped.numbers import Array
 from lumped.solvers.point.bodies import Bodies, Dent, Stage, State
-from lumped.solvers.point.contact import following
+from lumped.solvers.point.contact import following, force_left
 from lumped.solvers.radau import Nodes
 
 UNTOUCHED = Stage(True, 0.0, 0.0)
@@ -144,7 +144,10 @@ def events_of(gap: int, state: GapState, law: ForceLaw, depth: float, noise: flo
         corner = state.corners[0]
         found.append(GapEvent(gap, Happening.CORNER, lambda step: sign * (corner - step.depth[gap])))
     by_force = law.tensile and law.exit == "force"
-    value = _force_left(gap) if by_force else lambda step: step.depth[gap]
+
+    def value(step: FrameStep) -> Array:
+        return force_left(step.depth[gap], step.force[gap]) if by_force else step.depth[gap]
+
     if not state.stage.approaching:
         found.append(GapEvent(gap, Happening.EXIT, value, surfaces=not by_force))
     elif law.follows:
@@ -187,17 +190,6 @@ def _again(gap: int, dent: Dent, parted: float, time: float) -> GapEvent:
         return np.asarray(np.diff(value(step), prepend=-begun) < 0.0)
 
     return GapEvent(gap, Happening.AGAIN, value, rising)
-
-
-def _force_left(gap: int) -> Callable[[FrameStep], Array]:
-    """The force as long as there is depth; above the surface its mean stiffness times the depth goes on."""
-
-    def value(step: FrameStep) -> Array:
-        depth, force = step.depth[gap], step.force[gap]
-        beyond = force.max() / depth.max() if depth.max() > 0.0 else 1.0
-        return np.asarray(np.where(depth > 0.0, force, beyond * depth))
-
-    return value
 
 
 def after(

@@ -17,9 +17,9 @@ from lumped.numbers import Array
 from lumped.pounding.flow import TERMS, LinearBodies, longest_row
 from lumped.pounding.gaps import OPEN, FrameStep, GapEvent, GapState, Mode, after, pressed, surfaced
 from lumped.pounding.ground import GroundMotion
-from lumped.pounding.trial import NODES, FramesAt, FrameTrial, Rules
+from lumped.pounding.trial import FramesAt, FrameTrial, Rules
 from lumped.solvers.point.bodies import Bodies
-from lumped.solvers.radau import STAGES
+from lumped.solvers.radau import NODES, STAGES
 
 MOST_ROWS = 100_000  # work: a minute and half a gigabyte
 MOST_STEPS = 3000  # work: of one row, more is no motion but chatter
@@ -87,8 +87,8 @@ class FrameMarch:
     def run(self, times: Array, listener: Listener, gaps: Sequence[GapState] = (), on_time: OnTime = ignore) -> None:
         """From the start through all rows; `gaps`: what they do there, apart by default. Raises NotReached."""
         frames = self.rules.flow.frames
-        depths = frames.rows @ frames.start[: self.rules.flow.size] - frames.distances
-        at, length = FramesAt(0.0, frames.start, depths, tuple(gaps) or (OPEN,) * depths.size), math.inf
+        opened = tuple(gaps) or (OPEN,) * frames.distances.size
+        at, length = FramesAt(0.0, frames.start, frames.depths(frames.start), opened), math.inf
         length = min([length, *(self._first_length(i, gap) for i, gap in enumerate(at.gaps) if gap.active)])
         # A trial of Newton's method may go beyond all numbers: then the step is refused.
         i, ahead = 1, 1
@@ -101,8 +101,8 @@ class FrameMarch:
                     i, ahead = i + 1, 1
                     continue
                 listener.flight(flight)
-                depths = frames.rows @ flight.states[-1, : self.rules.flow.size] - frames.distances
-                at, length = FramesAt(float(flight.times[-1]), flight.states[-1], depths, at.gaps), math.inf
+                state = flight.states[-1]
+                at, length = FramesAt(float(flight.times[-1]), state, frames.depths(state), at.gaps), math.inf
                 i, ahead = i + flight.times.size - 1, min(2 * ahead, MOST_AHEAD)
 
     def _flight(self, at: FramesAt, times: Array) -> FramesFlight | None:
@@ -126,10 +126,9 @@ class FrameMarch:
 
     def _clear(self, at: FramesAt, within: Array, lengths: Array, noise: Array) -> int:
         """How many rows pass before one in which some gap comes near its touch."""
-        flow, frames = self.rules.flow, self.rules.flow.frames
-        depth = within[:, :, : flow.size] @ frames.rows.T - frames.distances
-        rate = within[:, :, flow.size :] @ frames.rows.T
-        first = np.vstack([frames.rows @ at.state[: flow.size] - frames.distances, depth[:-1, -1]])
+        frames = self.rules.flow.frames
+        depth, rate = frames.depths(within), frames.rates(within)
+        first = np.vstack([frames.depths(at.state), depth[:-1, -1]])
         reach = np.maximum(first, depth.max(axis=1)) + lengths[:, None] * np.abs(rate).max(axis=1)
         near = (reach >= -2.0 * noise).any(axis=1)
         return int(near.argmax()) if near.any() else lengths.size
@@ -166,13 +165,13 @@ class FrameMarch:
             return at
         flow, frames = self.rules.flow, self.rules.flow.frames
         depths, gaps, noise = at.depths.copy(), list(at.gaps), flow.noise(free)
-        depths[apart] = (frames.rows @ at.state[: flow.size] - frames.distances)[apart]
+        depths[apart] = frames.depths(at.state)[apart]
         zero = [i for i in apart if depths[i] >= -2.0 * noise[i]]
         depths[zero] = 0.0
         if zero:
             first = (length / flow.unit * NODES.points[0]) ** np.arange(1.0, TERMS + 1.0)
             moved = frames.rows @ (first @ free[1:, : flow.size])
-            rates = frames.rows @ at.state[flow.size :]
+            rates = frames.rates(at.state)
             for i in (i for i in zero if moved[i] > 2.0 * noise[i] and rates[i] >= 0.0):
                 gaps[i] = pressed(self.rules.laws[i], 0.0, float(rates[i]), flow.slowest(free), at.time)
         return at._replace(depths=depths, gaps=tuple(gaps))

@@ -12,8 +12,7 @@ from lumped.errors import addressed
 from lumped.laws._force_law import ForceLaw
 from lumped.pounding.case_file import PoundingCase
 from lumped.pounding.frames import PoundingFrames
-from lumped.pounding.result import FramesResult
-from lumped.pounding.simulation import simulate
+from lumped.pounding.simulation import FramesResult, simulate
 from lumped.progress import Progress, silent
 
 NO_CONTACT = "no contact"  # the variant whose structures pass through each other

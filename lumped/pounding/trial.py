@@ -22,18 +22,14 @@ from lumped.numbers import Array, falling_zero
 from lumped.pounding.flow import FrameFlow
 from lumped.pounding.gaps import FrameStep, GapEvent, GapState, Mode, events_of
 from lumped.solvers.point.bodies import TINY, PointLaw, Stage, State
-from lumped.solvers.radau import STAGES, Nodes, paced, radau
+from lumped.solvers.point.phase import HOPELESS, ITERATIONS, LOCATIONS
+from lumped.solvers.radau import NODES, SHORTEST, STAGES, Nodes, paced
 
-NODES = radau(STAGES)
-ITERATIONS = 12  # work: Newton's, of one step
 SMALL, EXACT = 1e-13, 1e-14  # a correction times its ratio to the one before; a correction that is rounding
 SLOW = 0.01  # work: a correction that is no smaller share of the one before asks for new slopes of the forces
-LOCATIONS = 60  # work: trials of where in a step something happens
 PRECISE = 1e-14  # of the time reached, and of a row: where it happens
 NEAR = 1e-10  # of a place in a step, which tells about when something happens
 NOISE = 1e-8  # rounding: of the slowest speed that counts, which no step can resolve
-SHORTEST, LONGEST, CAUTION = 0.1, 5.0, 0.8  # safety: least and most of the next step over this one, and the share
-HOPELESS = 2.0  # so much rougher than allowed a step need not be located any better to be refused
 FARTHEST = 1e4  # rounding: steps since touch, beyond which grading them is lost in the digits of the time
 
 
@@ -147,12 +143,12 @@ class FrameTrial:
                 return step, event, math.inf
             rough = math.inf if step is None else float((self._roughness(step) / self._allowed).max())
             if step is not None and (rough <= 1.0 or step.length <= shortest):
-                following = step.length * step.nodes.following(_ratio(rough, step.nodes.power))
+                following = step.length * step.nodes.following(rough)
                 return step, event, max(following, proposed) if step.length < proposed else following
             if step is None:
                 length *= SHORTEST
             else:
-                length = step.length * step.nodes.again(_ratio(rough, step.nodes.power))
+                length = step.length * step.nodes.again(rough)
             proposed = length
         raise NotReached(f"no step from {self.at.time:.6g} s on converges; cure: a law less stiff")
 
@@ -339,9 +335,3 @@ def _bracket(step: FrameStep, values: Array, place: int) -> tuple[float, float, 
     share = float(paced(np.array(at), nodes.power, nodes.begun, nodes.mirrored)[0])
     low = float(nodes.points[place - 1]) if place else 0.0
     return low * step.length, min(2.0 * float(nodes.points[place]), 1.0) * step.length, share * step.length
-
-
-def _ratio(rough: float, power: int) -> float:
-    """How much longer the root of the next step may be: the last Legendre terms fall with the power s of it."""
-    ratio = CAUTION * rough ** (-1.0 / STAGES) if rough > 0.0 else LONGEST
-    return float(min(max(ratio, SHORTEST ** (1.0 / power)), LONGEST ** (1.0 / power)))

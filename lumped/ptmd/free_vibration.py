@@ -20,18 +20,27 @@ from lumped.pounding.gaps import OPEN, FrameStep, GapState, Mode, pressed
 from lumped.pounding.ground import STILL
 from lumped.pounding.march import FrameMarch, FramesFlight, OnTime, ignore, rows
 from lumped.pounding.simulation import Peaks
-from lumped.pounding.trial import NODES, FramesAt, Rules
-from lumped.ptmd.result import Energy, Measures, PtmdContact, PtmdMotion, PtmdResult
-from lumped.ptmd.system import SIDES, PoundingDamper, PtmdRing, Start
+from lumped.pounding.trial import FramesAt, Rules
+from lumped.ptmd.system import (
+    SIDES,
+    Energy,
+    Measures,
+    PoundingDamper,
+    PtmdContact,
+    PtmdMotion,
+    PtmdResult,
+    Start,
+    bodies_of,
+    law_of,
+)
 from lumped.schema.keys import Key, Number, read_table
 from lumped.solvers.point.bodies import TINY, State
-from lumped.solvers.point.memory import HereditaryLoad
+from lumped.solvers.point.memory import StepLoad
+from lumped.solvers.radau import NODES
 
 TIME = Number(1e-9, 1e9, "s")
 TIME_KEYS = {"end_time": Key(TIME, "when to stop", False), "window": Key(TIME, "of the root mean squares", False)}
 STEP_TOLERANCE = 1e-7  # default: error of a relative speed in one step of a contact, over the speed at touch
-# Beyond this ratio of the shortest period to a relaxation time the digits that are promised are lost.
-STIFFEST = 6e6
 MOVING = 1e-12  # rounding: of the end of a window, for a row that stands there
 
 
@@ -60,74 +69,6 @@ def simulate(
     march = FrameMarch(Rules(FrameFlow(bodies, longest), laws, tolerance), STILL)
     march.run(times, track, track.first_gaps, on_time)
     return PtmdResult(system, start, track.motion(), track.all_contacts, track.energy(), track.measures(window))
-
-
-def bodies_of(system: PoundingDamper, start: Start) -> LinearBodies:
-    """Structure and damper as masses in a row; the ring's two gaps, depth x2 - x1 - gap and x1 - x2 - gap."""
-    one, two, ring = system.structure, system.damper, system.ring
-    if two is None:
-        own = (np.array([[one.stiffness]]), np.array([[one.damping]]))
-        return LinearBodies(np.array([one.mass]), *own, np.zeros((0, 1)), np.zeros(0), np.array([start.x1, start.v1]))
-    link = np.array([[1.0, -1.0], [-1.0, 1.0]])
-    stiffness, damping = two.stiffness * link, two.damping * link
-    stiffness[0, 0] += one.stiffness
-    damping[0, 0] += one.damping
-    sides = np.outer(SIDES, [-1.0, 1.0]) if ring else np.zeros((0, 2))
-    distances = np.full(len(sides), ring.gap if ring else 0.0)
-    placed = np.array([start.x1, start.x2, start.v1, start.v2])
-    return LinearBodies(np.array([one.mass, two.mass]), stiffness, damping, sides, distances, placed)
-
-
-@dataclass(frozen=True)
-class PowerLoad:
-    """The load curve depth^exponent, in m^exponent; as everywhere its slope counts as twice a contact radius."""
-
-    exponent: float
-
-    def force(self, depth: Array) -> Array:
-        """The load."""
-        return np.asarray(depth) ** self.exponent
-
-    def force_and_slope(self, depth: Array) -> tuple[Array, Array]:
-        """The load and its slope."""
-        return self.force(depth), np.asarray(self.exponent * np.asarray(depth) ** (self.exponent - 1.0))
-
-    def contact_radius(self, depth: Array) -> Array:
-        """Half the slope."""
-        return 0.5 * self.force_and_slope(depth)[1]
-
-    def depth_slope(self, contact_radius: Array) -> Array:
-        """d depth over d radius; infinite where the slope stays."""
-        if self.exponent == 1.0:
-            return np.full_like(contact_radius, np.inf)
-        power = self.exponent - 1.0
-        depth = (2.0 * np.asarray(contact_radius) / self.exponent) ** (1.0 / power)
-        return np.asarray(2.0 * depth ** (1.0 - power) / (self.exponent * power))
-
-
-def law_of(ring: PtmdRing, bodies: LinearBodies) -> HereditaryForce:
-    """The force of a side over its depth. Raises BadInput where it relaxes far too fast for the vibration."""
-    stiffness, mass = ring.stiffness, float(bodies.reduced_masses[0])
-    steepest = float(bodies.stiffness.max()) + _steepest(ring, bodies)
-    shortest = 2.0 * np.pi * np.sqrt(mass / steepest) / STIFFEST
-    creep = [stiffness.viscosity / stiffness.glassy] if stiffness.viscosity and stiffness.glassy else []
-    if min([*stiffness.times, *creep], default=shortest) < shortest:
-        message = f"relaxes in less than {shortest:.2g} s, too fast beside the vibration; cure: leave that term out"
-        raise BadInput(Fault("ring", "material", message))
-    ends = "depth" if stiffness.is_elastic else "force"
-    scale = float(np.pi * np.sqrt(mass / steepest))
-    return HereditaryForce(
-        load=HereditaryLoad(PowerLoad(ring.exponent), stiffness), rule=ring.memory.value, scale=scale, exit=ends
-    )
-
-
-def _steepest(ring: PtmdRing, bodies: LinearBodies) -> float:
-    """Largest slope of the ring's force over the depth, N/m, with all the energy of the start in it."""
-    glassy, power = ring.stiffness.glassy, ring.exponent
-    if glassy == 0.0:
-        return 0.0
-    deepest = ((power + 1.0) * sum(bodies.energies(bodies.start)) / glassy) ** (1.0 / (power + 1.0))
-    return float(power * glassy * deepest ** (power - 1.0))
 
 
 @dataclass
@@ -159,7 +100,7 @@ class PtmdTrack:
         self.contacts: list[PtmdContact] = []
         self.acceleration = Peaks.of(1)
         self.lost_ring = self.cut_tension = 0.0
-        self.last = FramesAt(0.0, bodies.start, self.depths(bodies.start), self.first_gaps)
+        self.last = FramesAt(0.0, bodies.start, bodies.depths(bodies.start), self.first_gaps)
         sides = zip(self.first_gaps, self.last.depths.tolist(), strict=True)
         self.held = [self.stored(side, gap, depth, 0.0) for side, (gap, depth) in enumerate(sides)]
 
@@ -170,16 +111,11 @@ class PtmdTrack:
         """Whether the ring's law has an energy of its own."""
         return self.system.ring is None or self.system.ring.exponent == 1.0
 
-    def depths(self, states: Array) -> Array:
-        """Penetration of the undeformed ring at each side, m, (..., m), negative where the damper is clear of it."""
-        return np.asarray(states[..., : self.bodies.mass.size] @ self.bodies.rows.T - self.bodies.distances)
-
     @cached_property
     def first_gaps(self) -> tuple[GapState, ...]:
         """What both sides do at t = 0: one that the damper stands in is relaxed."""
-        n, bodies = self.bodies.mass.size, self.bodies
-        depths, rates = self.depths(bodies.start), bodies.rows @ bodies.start[n:]
-        return tuple(self._begun(*one) for one in zip(self.laws, depths.tolist(), rates.tolist(), strict=True))
+        depths, rates = (found(self.bodies.start).tolist() for found in (self.bodies.depths, self.bodies.rates))
+        return tuple(self._begun(*one) for one in zip(self.laws, depths, rates, strict=True))
 
     def _begun(self, law: HereditaryForce, depth: float, rate: float) -> GapState:
         if depth <= 0.0:
@@ -210,8 +146,7 @@ class PtmdTrack:
         if not self.linear:
             return float(weights @ (step.force[side] * rate))
         law, gap, depth = self.laws[side], at.gaps[side], np.maximum(step.depth[side], TINY)
-        first = State(float(at.depths[side]), float(step.first_rate[side]), 0.0, gap.memory)
-        slips = law.load.load(depth) - law.memories_within(first, step.length, depth)
+        slips = law.load.load(depth) - StepLoad.of(law.load, gap.memory, step.length, NODES).memories(depth)
         modulus = law.load.modulus
         dashpots = np.divide(modulus.moduli, modulus.times) @ slips**2
         return float(weights @ (dashpots + modulus.viscosity * rate**2))
@@ -221,7 +156,7 @@ class PtmdTrack:
     def flight(self, flight: FramesFlight) -> None:
         """Rows without contact."""
         lengths, apart = np.diff(flight.times)[:, None], [OPEN] * len(self.laws)
-        gaps = FramesAt(float(flight.times[0]), flight.states[0], self.depths(flight.states[0]), tuple(apart))
+        gaps = FramesAt(float(flight.times[0]), flight.states[0], self.bodies.depths(flight.states[0]), tuple(apart))
         self._switch(gaps)
         force = np.zeros((*flight.ground.shape, len(self.laws)))
         times = flight.times[:-1, None] + lengths * NODES.points
@@ -272,7 +207,7 @@ class PtmdTrack:
 
     def _forces(self, at: FramesAt) -> list[float]:
         """Of the sides at an instant, N."""
-        rates = self.bodies.rows @ at.state[self.bodies.mass.size :]
+        rates = self.bodies.rates(at.state)
         return [
             law.at_start(float(depth), float(rate), gap.memory) if gap.mode is Mode.PRESSED else 0.0
             for law, gap, depth, rate in zip(self.laws, at.gaps, at.depths, rates, strict=True)
@@ -309,7 +244,7 @@ class PtmdTrack:
         n, a = self.bodies.mass.size, self.accelerations
         absent = np.full(times.size, np.nan)
         x2, v2, a2 = (states[:, 1], states[:, 3], a[:, 1]) if n > 1 else (absent, absent, absent)
-        depth = self.depths(states).max(axis=1, initial=0.0)
+        depth = self.bodies.depths(states).max(axis=1, initial=0.0)
         force = np.maximum(forces, 0.0) @ np.array(SIDES[: len(self.laws)])  # rounding is left where a contact ends
         return PtmdMotion(times, states[:, 0], states[:, n], a[:, 0], x2, v2, a2, force, depth)
 
@@ -339,7 +274,7 @@ class PtmdTrack:
         if ring is None:
             return 0.0
         power = ring.exponent + 1.0
-        depths = np.maximum(self.depths(self.bodies.start), 0.0)
+        depths = np.maximum(self.bodies.depths(self.bodies.start), 0.0)
         return float(ring.stiffness.relaxed * (depths**power).sum() / power)
 
     def measures(self, window: float) -> Measures:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 
 from lumped.errors import addressed
 from lumped.progress import Progress, silent
 from lumped.ptmd.case_file import Case
 from lumped.ptmd.free_vibration import STEP_TOLERANCE, simulate
-from lumped.ptmd.result import PtmdResult
-from lumped.ptmd.system import PoundingDamper
+from lumped.ptmd.system import PoundingDamper, PtmdResult
 from lumped.result.result import LedgerEntry, sufficient
 
 FINER = 1e-2 * STEP_TOLERANCE  # of the second run that tells errors
@@ -94,8 +93,9 @@ def convergence(main: PtmdResult, again: PtmdResult) -> Convergence:
     """How the finer steps of `again` change the result."""
     changes: list[float] = []
     same = len(main.contacts) == len(again.contacts)
-    for name, value in main.measures.to_dict().items():
-        other = again.measures.to_dict()[name]
+    finer = asdict(again.measures)
+    for name, value in asdict(main.measures).items():
+        other = finer[name]
         if value is None or other is None:
             same = same and value is other
         else:

@@ -1,23 +1,40 @@
-"""The pounding tuned mass damper of section 5: a structure, a damper on it, and a viscoelastic ring that stops it."""
+"""The pounding tuned mass damper of section 5: structure, damper on it, viscoelastic ring around that; what it did."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from enum import Enum
 from typing import Annotated, ClassVar
 
 import numpy as np
 
 from lumped.errors import BadInput, Fault
+from lumped.laws.correspondence import HereditaryForce
 from lumped.materials import Relaxation
+from lumped.numbers import Array
+from lumped.pounding.flow import LinearBodies
 from lumped.schema.keys import Key, Number, Record
 from lumped.shapes.base import SIZE
+from lumped.solvers.point.memory import HereditaryLoad
 
 LENGTH = Key(SIZE, "length")
 DISPLACEMENT, VELOCITY = Key(Number(-1e4, 1e4, "m"), "displacement"), Key(Number(-1e4, 1e4, "m/s"), "velocity")
 MASS, STIFFNESS, DAMPING = Number(1e-9, 1e12, "kg"), Number(1e-9, 1e18, "N/m"), Number(0.0, 1e15, "N s/m")
 LEAST = 1e-100  # rounding: m or m/s whose energy is still a number
 SIDES = (1, -1)  # signs of the ring's two sides
+# Beyond this ratio of the shortest period to a relaxation time the digits that are promised are lost.
+STIFFEST = 6e6
+COLUMNS = {
+    "time": "time_s",
+    "x1": "x1_m",
+    "v1": "v1_m_per_s",
+    "a1": "a1_m_per_s2",
+    "x2": "x2_m",
+    "v2": "v2_m_per_s",
+    "a2": "a2_m_per_s2",
+    "force": "force_N",
+    "depth": "depth_m",
+}
 
 
 class Memory(Enum):
@@ -109,3 +126,169 @@ class Start(Record):
     def structure(cls, displacement: float) -> Start:
         """The structure alone displaced, m."""
         return cls(displacement)
+
+
+def bodies_of(system: PoundingDamper, start: Start) -> LinearBodies:
+    """Structure and damper as masses in a row; the ring's two gaps, depth x2 - x1 - gap and x1 - x2 - gap."""
+    one, two, ring = system.structure, system.damper, system.ring
+    if two is None:
+        own = (np.array([[one.stiffness]]), np.array([[one.damping]]))
+        return LinearBodies(np.array([one.mass]), *own, np.zeros((0, 1)), np.zeros(0), np.array([start.x1, start.v1]))
+    link = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    stiffness, damping = two.stiffness * link, two.damping * link
+    stiffness[0, 0] += one.stiffness
+    damping[0, 0] += one.damping
+    sides = np.outer(SIDES, [-1.0, 1.0]) if ring else np.zeros((0, 2))
+    distances = np.full(len(sides), ring.gap if ring else 0.0)
+    placed = np.array([start.x1, start.x2, start.v1, start.v2])
+    return LinearBodies(np.array([one.mass, two.mass]), stiffness, damping, sides, distances, placed)
+
+
+@dataclass(frozen=True)
+class PowerLoad:
+    """The load curve depth^exponent, in m^exponent; as everywhere its slope counts as twice a contact radius."""
+
+    exponent: float
+
+    def force(self, depth: Array) -> Array:
+        """The load."""
+        return np.asarray(depth) ** self.exponent
+
+    def force_and_slope(self, depth: Array) -> tuple[Array, Array]:
+        """The load and its slope."""
+        return self.force(depth), np.asarray(self.exponent * np.asarray(depth) ** (self.exponent - 1.0))
+
+    def contact_radius(self, depth: Array) -> Array:
+        """Half the slope."""
+        return 0.5 * self.force_and_slope(depth)[1]
+
+    def depth_slope(self, contact_radius: Array) -> Array:
+        """d depth over d radius; infinite where the slope stays."""
+        if self.exponent == 1.0:
+            return np.full_like(contact_radius, np.inf)
+        power = self.exponent - 1.0
+        depth = (2.0 * np.asarray(contact_radius) / self.exponent) ** (1.0 / power)
+        return np.asarray(2.0 * depth ** (1.0 - power) / (self.exponent * power))
+
+
+def law_of(ring: PtmdRing, bodies: LinearBodies) -> HereditaryForce:
+    """The force of a side over its depth. Raises BadInput where it relaxes far too fast for the vibration."""
+    stiffness, mass = ring.stiffness, float(bodies.reduced_masses[0])
+    steepest = float(bodies.stiffness.max()) + _steepest(ring, bodies)
+    shortest = 2.0 * np.pi * np.sqrt(mass / steepest) / STIFFEST
+    creep = [stiffness.viscosity / stiffness.glassy] if stiffness.viscosity and stiffness.glassy else []
+    if min([*stiffness.times, *creep], default=shortest) < shortest:
+        message = f"relaxes in less than {shortest:.2g} s, too fast beside the vibration; cure: leave that term out"
+        raise BadInput(Fault("ring", "material", message))
+    ends = "depth" if stiffness.is_elastic else "force"
+    scale = float(np.pi * np.sqrt(mass / steepest))
+    return HereditaryForce(
+        load=HereditaryLoad(PowerLoad(ring.exponent), stiffness), rule=ring.memory.value, scale=scale, exit=ends
+    )
+
+
+def _steepest(ring: PtmdRing, bodies: LinearBodies) -> float:
+    """Largest slope of the ring's force over the depth, N/m, with all the energy of the start in it."""
+    glassy, power = ring.stiffness.glassy, ring.exponent
+    if glassy == 0.0:
+        return 0.0
+    deepest = ((power + 1.0) * sum(bodies.energies(bodies.start)) / glassy) ** (1.0 / (power + 1.0))
+    return float(power * glassy * deepest ** (power - 1.0))
+
+
+@dataclass(frozen=True, eq=False)
+class PtmdMotion:
+    """Columns of one length, SI; 1 is the structure, 2 the damper (not a number without one).
+
+    `force` is f of "(33)", with the sign of x2 - x1; `depth` the penetration of the undeformed ring, >= 0. Two
+    rows stand at the instant of a switch of contact.
+    """
+
+    time: Array
+    x1: Array
+    v1: Array
+    a1: Array
+    x2: Array
+    v2: Array
+    a2: Array
+    force: Array
+    depth: Array
+
+
+@dataclass(frozen=True)
+class PtmdContact:
+    """One contact: side of the ring (1 at x2 - x1 > 0, else -1), times, s, largest force, N, and penetration, m.
+
+    `end` is None when it still lasts at the end of the motion.
+    """
+
+    side: int
+    start: float
+    end: float | None
+    peak_force: float
+    peak_depth: float
+
+
+@dataclass(frozen=True)
+class Energy:
+    """Where the energy is at the end, J, each term computed on its own; `initial` holds that of a ring compressed
+    at the start.
+
+    `lost_ring` is spent in the lining (and forgotten by it, with that memory), `stored_ring` still locked in it.
+    For an exponent other than 1 the law has no energy of its own: `stored_ring` is None and `lost_ring` all
+    that the ring took and did not give back. `cut_tension` is the work which the tension cut off from a
+    continuous memory does on the ring: nobody pays it.
+    """
+
+    initial: float
+    kinetic: float
+    potential: float
+    lost_structure: float
+    lost_damper: float
+    lost_ring: float
+    stored_ring: float | None
+    cut_tension: float
+
+    @property
+    def residual(self) -> float:
+        """What is left of the balance, J."""
+        spent = self.lost_structure + self.lost_damper + self.lost_ring
+        left = self.kinetic + self.potential + (self.stored_ring or 0.0)
+        return self.initial + self.cut_tension - spent - left
+
+    def to_dict(self) -> dict[str, float | None]:
+        """The terms and the residual, J."""
+        return asdict(self) | {"residual": self.residual}
+
+
+@dataclass(frozen=True)
+class Measures:
+    """The numbers that tell one motion from another, SI; None where undefined.
+
+    Root mean squares are taken over the first `window` seconds; `t50` and `t10` are the last times at which |x1|
+    exceeds 50 and 10 % of its start. The first contact is the first that begins after t = 0.
+    """
+
+    window: float
+    max_acceleration: float
+    rms_acceleration: float
+    rms_displacement: float
+    t50: float | None
+    t10: float | None
+    contacts: int
+    last_contact: float | None
+    first_contact_duration: float | None
+    peak_force: float
+    peak_depth: float
+
+
+@dataclass(frozen=True, eq=False)
+class PtmdResult:
+    """One free vibration of a system."""
+
+    system: PoundingDamper
+    start: Start
+    motion: PtmdMotion
+    contacts: tuple[PtmdContact, ...]
+    energy: Energy
+    measures: Measures

@@ -94,17 +94,6 @@ class Bounces:
         pressed = self.bar.impedance * (self.fall(t) - 2.0 * self.wave(t - self.bar.echo))
         return np.where(closed[index] & (t >= 0.0), pressed, 0.0)
 
-    def depth(self, time: ArrayLike) -> Array:
-        """How far the far end has come since the start, m: without waves V t."""
-        t = np.asarray(time, dtype=float)
-        fallen = self.velocity * t + 0.5 * self.gravity * t**2
-        return fallen - 2.0 * self._travelled(t - 0.5 * self.bar.echo)
-
-    def approach(self, time: ArrayLike) -> Array:
-        """Velocity of the far end towards the plane, m/s."""
-        t = np.asarray(time, dtype=float)
-        return self.fall(t) - 2.0 * self.wave(t - 0.5 * self.bar.echo)
-
     @property
     def contacts(self) -> tuple[tuple[float, float], ...]:
         """Touch and separation of every contact, s; the last may end with the motion."""
@@ -133,15 +122,6 @@ class Bounces:
         edges = np.array([max(time - self.bar.echo, 0.0), *knots, max(time, 0.0)])
         middle, half = 0.5 * (edges[1:] + edges[:-1]), 0.5 * np.diff(edges)
         return float(sum(half @ self.wave(middle + half * x) ** power for x in (-(3**-0.5), 3**-0.5)))
-
-    def _travelled(self, time: Array) -> Array:
-        """Integral of the wave from the start, m."""
-        starts, values, slopes = self.columns
-        spans = np.diff(starts)
-        sums = np.append(0.0, np.cumsum(values[:-1] * spans + 0.5 * slopes[:-1] * spans**2))
-        index = np.maximum(np.searchsorted(starts, time, side="right") - 1, 0)
-        since = np.maximum(time - starts[index], 0.0)
-        return np.asarray(sums[index] + values[index] * since + 0.5 * slopes[index] * since**2)
 
 
 def bounces(

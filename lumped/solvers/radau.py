@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from lumped.numbers import Array, Real
 
 STAGES = 8  # default: Radau points of a step
+SHORTEST, LONGEST, CAUTION = 0.1, 5.0, 0.8  # safety: least and most of the next step over this one, and the share
 
 
 class Nodes(NamedTuple):
@@ -50,19 +51,24 @@ class Nodes(NamedTuple):
         twice = self.once @ (pace[:, None] * self.once)
         return self._replace(power=power, begun=begun, mirrored=mirrored, points=points, pace=pace, twice=twice)
 
-    def again(self, ratio: float) -> float:
-        """The share of its length for a step that begins at the same time, with `ratio` times its root's length.
+    def again(self, rough: float) -> float:
+        """The share of its length for a step that begins at the same time: this one is so much rougher than allowed.
 
         A mirrored one leaves as much of its end to another, and takes what is before.
         """
         low, high = self.roots
-        share = float((low + ratio * (high - low)) ** self.power - self.begun)
+        share = float((low + self._longer(rough) * (high - low)) ** self.power - self.begun)
         return 1.0 - share if self.mirrored else share
 
-    def following(self, ratio: float) -> float:
-        """The share of its length for the step that follows, with `ratio` times its root's length."""
+    def following(self, rough: float) -> float:
+        """The share of its length for the step that follows: this one is so much rougher than allowed, or smoother."""
         low, high = self.roots
-        return float((high + ratio * (high - low)) ** self.power - (1.0 + self.begun))
+        return float((high + self._longer(rough) * (high - low)) ** self.power - (1.0 + self.begun))
+
+    def _longer(self, rough: float) -> float:
+        """How much longer the root of a step may be: the last Legendre terms fall with the power s of it."""
+        ratio = CAUTION * rough ** (-1.0 / STAGES) if rough > 0.0 else LONGEST
+        return float(min(max(ratio, SHORTEST ** (1.0 / self.power)), LONGEST ** (1.0 / self.power)))
 
     @property
     def roots(self) -> tuple[float, float]:
@@ -88,6 +94,9 @@ def radau(count: int) -> Nodes:
     pace = np.ones(count)
     last, leaving = np.array(once[-1]), np.array(ends @ series)
     return Nodes(1, 0.0, False, points, pace, once, once @ once, last, series, first, leaving, points)
+
+
+NODES = radau(STAGES)
 
 
 def paced(place: Array, power: Real, begun: Real, mirrored: Real) -> tuple[Array, Array]:

@@ -102,30 +102,22 @@ class Waves:
 
 @dataclass(frozen=True)
 class RodPiece:
-    """What leaves between two echoes, over the striker's velocity at touch: ``shift`` + exp(-s) ``factor``(s)."""
+    """A function of s between two echoes: ``shift`` + ``slope`` s + exp(-s) ``factor``(s).
+
+    What leaves, p, over the striker's velocity at touch, has no slope; its integral, over that and m/Z, may have one.
+    """
 
     shift: float
     factor: Polynomial
+    slope: float = 0.0
 
     def __call__(self, s: Array | float) -> Array:
-        """p, shape of s."""
-        return np.asarray(self.shift + np.exp(-np.asarray(s)) * self.factor(s))
+        """It, shape of s."""
+        s = np.asarray(s)
+        return np.asarray(self.shift + self.slope * s + np.exp(-s) * self.factor(s))
 
 
-@dataclass(frozen=True)
-class RodTravel:
-    """The integral of what leaves, over the striker's velocity at touch and m/Z: two terms of s, exp(-s) ``factor``."""
-
-    constant: float
-    slope: float
-    factor: Polynomial
-
-    def __call__(self, s: Array) -> Array:
-        """f, shape of s."""
-        return np.asarray(self.constant + self.slope * s + np.exp(-s) * self.factor(s))
-
-
-STILL, UNMOVED = RodPiece(0.0, NOTHING), RodTravel(0.0, 0.0, NOTHING)
+STILL = RodPiece(0.0, NOTHING)
 
 
 @dataclass(frozen=True)
@@ -205,14 +197,14 @@ class FlatImpact:
         return leaves, came
 
     @cached_property
-    def _travels(self) -> list[RodTravel]:
+    def _travels(self) -> list[RodPiece]:
         """How far what leaves has moved the rod's end, a piece an echo, see :meth:`_depth`."""
         weight, echo = self.gravity * self.unit / self.velocity, self.waves.echo
-        found, before, earlier = list[RodTravel](), STILL, UNMOVED
+        found, before, earlier = list[RodPiece](), STILL, STILL
         for piece, start in zip(self.pieces[0], self.starts / self.unit, strict=True):
-            constant = 1.0 + weight * float(start) - piece.shift - echo * before.shift + echo * earlier.constant
+            shift = 1.0 + weight * float(start) - piece.shift - echo * before.shift + echo * earlier.shift
             factor = echo * earlier.factor - piece.factor - echo * before.factor
-            before, earlier = piece, RodTravel(constant, weight + echo * earlier.slope, factor)
+            before, earlier = piece, RodPiece(shift, factor, weight + echo * earlier.slope)
             found.append(earlier)
         return found
 
@@ -243,14 +235,6 @@ def _next(found: list[RodPiece], alpha: float, echo: float, weight: float) -> Ro
     return RodPiece(shift, factor + (start - shift))
 
 
-@dataclass(frozen=True)
-class RodScales:
-    """Depth, m, and time, s, of the elastic impact on a body that sends no waves."""
-
-    depth: float
-    time: float
-
-
 class _BetweenEchoes(Protocol):
     """The states x, x', u between two echoes, at the times of an integrator's steps `ts`, s, and at any others."""
 
@@ -263,8 +247,9 @@ class _BetweenEchoes(Protocol):
 class TippedImpact:
     """One impact: ``force`` over the dent's depth, N and m; mass, kg; velocity, m/s; gravity along the motion, m/s2.
 
-    Followed until ``until``, s, each step to ``rtol``, and no longer than a share ``longest`` of the elastic impact and
-    of the time between two echoes.
+    ``depth``, m, and ``time``, s, are those of the elastic impact on a body that sends no waves. Followed until
+    ``until``, s, each step to ``rtol``, and no longer than a share ``longest`` of that time and of the one between two
+    echoes.
     """
 
     waves: Waves
@@ -273,7 +258,8 @@ class TippedImpact:
     velocity: float
     gravity: float
     until: float
-    scales: RodScales
+    depth: float
+    time: float
     rtol: float
     longest: float = LONGEST
 
@@ -285,9 +271,9 @@ class TippedImpact:
         """
         from scipy.integrate import solve_ivp
 
-        longest = self.longest * min(self.scales.time, self.waves.delay)
+        longest = self.longest * min(self.time, self.waves.delay)
         state, found, begin = np.array([0.0, self.velocity, 0.0]), list[_BetweenEchoes](), 0.0
-        tolerances = self.rtol * ABSOLUTE * np.array([self.scales.depth, self.velocity, self.scales.depth])
+        tolerances = self.rtol * ABSOLUTE * np.array([self.depth, self.velocity, self.depth])
         cure, steps = "accepted: a heavier rod, an earlier motion.end_time", count()
 
         def parted(_: float, y: Array) -> float:

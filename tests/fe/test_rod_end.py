@@ -17,7 +17,7 @@ from fe_contact.bodies.pressing import held
 from fe_contact.methods import simulate
 from lumped import Scene, laws
 from lumped.result.model_ledger import ROD_END
-from lumped.solvers.rod import RodScales, TippedImpact, Waves
+from lumped.solvers.rod import TippedImpact, Waves
 
 LONG = 3.0  # radii of the rod, behind which its section moves as one
 FINE = 16.0  # elements along the contact radius
@@ -97,7 +97,8 @@ def peak(scene: Scene, less: float) -> float:
         velocity=velocity,
         gravity=0.0,
         until=3.0 * known.duration,
-        scales=RodScales(known.depth, known.duration),
+        depth=known.depth,
+        time=known.duration,
         rtol=1e-7,
     )
     times = np.linspace(0.0, impact.pieces[1], ROWS)

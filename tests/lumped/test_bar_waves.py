@@ -43,6 +43,14 @@ def integral(function: object, edges: np.ndarray) -> float:
     return float(np.tile(half, 2) @ [float(function(t)) for t in nodes])  # type: ignore[operator] # a plain callable
 
 
+def far_end(found: Bounces, time: float) -> tuple[float, float]:
+    """How far the bar's far end has come, and its velocity: V t and V without waves, which are half an echo old."""
+    late = time - 0.5 * found.bar.echo
+    travelled = integral(found.wave, knots(found, 0.0, late)) if late > 0.0 else 0.0
+    fallen = found.velocity * time + 0.5 * found.gravity * time**2
+    return fallen - 2.0 * travelled, float(found.fall(time) - 2.0 * found.wave(late))
+
+
 def test_the_bouncing_bar_touches_every_eight_transit_times_for_two() -> None:
     """From rest 5 m above the plane: period 16 transit times, in which it touches twice."""
     contacts = bounces(BAR, 0.0, 10.0, 5.0, 160.5 * TRANSIT).contacts
@@ -66,7 +74,8 @@ def test_the_far_end_of_the_bouncing_bar_follows_the_published_series() -> None:
     a = -2 * 10.0 / (900.0 * 10.0 * nu**3)
     series = ((a * np.sin(10.0 * nu))[:, None] * (1 - np.cos(30.0 * np.outer(nu, t)))).sum(axis=0)
     wave = -10.0 * np.minimum(10.0 / 30.0, TRANSIT - np.abs(t - TRANSIT))
-    np.testing.assert_allclose(bounces(BAR, 10.0, 10.0, 0.0, 1.0).depth(t), -(series + wave), atol=1e-9)
+    found = bounces(BAR, 10.0, 10.0, 0.0, 1.0)
+    np.testing.assert_allclose([far_end(found, time)[0] for time in t], -(series + wave), atol=1e-9)
 
 
 def test_the_impact_of_a_bar_on_a_wall() -> None:
@@ -74,8 +83,8 @@ def test_the_impact_of_a_bar_on_a_wall() -> None:
     found = bounces(BAR, 10.0, 0.0, 5.0, 3.0)
     np.testing.assert_allclose(found.contacts, [(0.5, 0.5 + 2 * TRANSIT)], rtol=1e-12)
     np.testing.assert_allclose(found.force([0.49, 0.51, 0.8, 1.16, 1.17]), [0, 300, 300, 300, 0])
-    np.testing.assert_allclose(found.approach([0.4, 0.8, 0.9, 2.0]), [10, 10, -10, -10])
-    assert found.depth(2.0) == pytest.approx(10.0 * (0.5 + TRANSIT) - 10.0 * (1.5 - TRANSIT))
+    np.testing.assert_allclose([far_end(found, time)[1] for time in (0.4, 0.8, 0.9, 2.0)], [10, 10, -10, -10])
+    assert far_end(found, 2.0)[0] == pytest.approx(10.0 * (0.5 + TRANSIT) - 10.0 * (1.5 - TRANSIT))
 
 
 @given(SEEDS)

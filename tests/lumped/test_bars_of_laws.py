@@ -27,8 +27,8 @@ from lumped.scene.tables import LawChoice
 from lumped.solvers.point import half_widths
 from lumped.solvers.point.bodies import Bodies, Stage, State, Step
 from lumped.solvers.point.contact import DEPTH_LEFT
-from lumped.solvers.point.phase import NODES, PointMarch
-from lumped.solvers.radau import STAGES
+from lumped.solvers.point.phase import PointMarch
+from lumped.solvers.radau import NODES, STAGES
 
 CASES = 600
 # Where an error is rounding its size is an accident; the time of a flat peak is known to the root of rounding.

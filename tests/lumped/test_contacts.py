@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -14,6 +12,7 @@ from scipy.integrate import solve_ivp
 
 from lumped import BadInput, Model, Motion, Scene, laws, simulate
 from lumped.laws import _force_law
+from lumped.laws._assembly import values_of_several
 from lumped.laws.correspondence import Correspondence
 from lumped.result.history import End
 from lumped.result.result import Result
@@ -223,12 +222,10 @@ def test_choices_come_from_the_scene_and_only_they(impact: Build) -> None:
         laws.correspondence.of(Scene(None, 1.0, 1.0, model=Model()))
 
 
-def test_of_equal_peaks_the_first_is_told_and_of_others_the_highest(impact: Build) -> None:
+def test_of_equal_peaks_the_first_is_told_and_of_others_the_highest() -> None:
     """Equal but for the rounding of a long march: a later contact may be the harder one."""
-    scene, last = impact(**SOLID), SimpleNamespace(rate=-1.0)
-    moved: Any = SimpleNamespace(end=End.SEPARATED, contacts=[SimpleNamespace(last=last, end_time=3.0)])
     for peaks, first in (((1.0, 2.0, 1.5), 1), ((1.0, 2.0 - 1e-12, 2.0), 1), ((1.0, 1.9, 2.0), 2)):
         outcomes = [Outcome(t, 0.5, 1.0, 0.9, force, t + 0.2, 1e-3 * t) for t, force in enumerate(peaks)]
-        told = _force_law._values(scene, moved, outcomes, 4.0)
+        told = values_of_several(outcomes, 4.0)
         assert (told["peak_force"], told["peak_time"]) == (peaks[first], first + 0.2)
-        assert (told["peak_depth"], told["duration"], told["restitution"]) == (2e-3, 0.5, 0.9)
+        assert (told["peak_depth"], told["duration"], told["restitution"], told["impulse"]) == (2e-3, 0.5, 0.9, 4.0)

@@ -11,7 +11,7 @@ from scipy.linalg import expm
 from lumped import Relaxation, Sphere
 from lumped.solvers.point.bodies import Bodies, State
 from lumped.solvers.point.memory import FreeSurface, HeldSurface, HereditaryLoad, StepLoad, reset
-from lumped.solvers.point.phase import NODES
+from lumped.solvers.radau import NODES
 
 Array = NDArray[np.float64]
 

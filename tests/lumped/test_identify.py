@@ -20,7 +20,7 @@ from scipy.special import stdtrit
 
 from lumped import BadInput, Scene, identify, laws, simulate
 from lumped.identify import keys as free_keys
-from lumped.identify.ensemble import Linearized, draws_of
+from lumped.identify.certainty import Linearized, draws_of
 from lumped.identify.histories import Impact
 from lumped.identify.keys import SceneFile
 from lumped.numbers import Array

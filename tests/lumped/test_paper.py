@@ -18,12 +18,24 @@ from scipy.optimize import minimize_scalar
 
 from lumped import Scene, laws, simulate
 from lumped.errors import BadInput, NotReached
-from lumped.paper import Claim, Examples, Value, claims, recompute, rules
-from lumped.paper.claims import FAILS, HOLDS, OPEN, Assumption
+from lumped.paper import Claim, Examples, Value, claims, recompute
+from lumped.paper.claims import (
+    AGREES,
+    DIFFERS,
+    FAILS,
+    HOLDS,
+    OPEN,
+    UNDECIDED,
+    UNJUDGED,
+    UNKNOWN,
+    UNPRINTED,
+    Assumption,
+    Rule,
+    half_unit,
+)
 from lumped.paper.concrete_impacts import plateau_cut, proposed
 from lumped.paper.given import Steel
 from lumped.paper.ring_impacts import force, impact, stiffness
-from lumped.paper.rules import AGREES, DIFFERS, UNDECIDED, UNJUDGED, UNKNOWN, UNPRINTED, Rule, half_unit
 from lumped.paper.steel_impacts import DentedSurface, R1_of_peak, damped_of_peak, elastic_of_peak, solid
 from lumped.result.history import History
 from lumped.result.result import Result
@@ -225,7 +237,7 @@ def test_printed_values_are_the_inputs(examples: Examples) -> None:
         "H9.damper": [ptmd.c2], "H10": [100 * ptmd.gap, 100 * ring.width], "H11": [100 * ptmd.displacement],
     }  # fmt: skip
     for id, values in inputs.items():
-        assert rules.numbers(printed[id]) == pytest.approx(values, rel=1e-12), id
+        assert claims.numbers(printed[id]) == pytest.approx(values, rel=1e-12), id
     inch = 0.0254
     assert (steel.diameter, steel.drop) == pytest.approx((5 / 32 * inch, 2 * inch), rel=1e-12)
 
@@ -336,7 +348,7 @@ def test_unknown_names_are_named_with_the_nearest() -> None:
     with pytest.raises(BadInput, match=r"did you mean steel_ball\.proposed_peak\?"):
         recompute.get("steel_ball.propsed_peak")
     with pytest.raises(BadInput, match="did you mean digits"):
-        rules.get(rules.load(), "digit", "X1")
+        claims.rule_of(claims.load_rules(), "digit", "X1")
 
 
 @pytest.mark.parametrize(

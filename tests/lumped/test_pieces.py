@@ -31,7 +31,16 @@ from lumped.solvers.hereditary.pieces import (
     together,
 )
 from lumped.solvers.hereditary.rebound import Rebound
-from lumped.solvers.radau import chebyshev_through_zero, place_of, radau, through_zero
+from lumped.solvers.radau import (
+    CAUTION,
+    LONGEST,
+    SHORTEST,
+    STAGES,
+    chebyshev_through_zero,
+    place_of,
+    radau,
+    through_zero,
+)
 
 
 def test_polynomials_are_chebyshev_s_of_few_places_and_of_many() -> None:
@@ -110,19 +119,26 @@ def test_graded_nodes_run_through_a_root_of_the_time(power: int, begun: float, m
 
 @pytest.mark.parametrize(("power", "begun"), [(2, 0.0), (3, 0.7)])
 def test_steps_of_the_same_root_follow_and_are_tried_again(power: int, begun: float) -> None:
-    """Of a step from time 2 to 5 with its root begun before: half its root's length again, or as much after it."""
+    """Of a step from time 2 to 5 with its root begun before: half its root's length again, or as much after it.
+
+    What is rougher by the eighth power asks for as much a shorter root, less what is left to chance; none is free.
+    """
     nodes, length = radau(8).graded(power, begun), 3.0
 
     def rooted(share: float) -> float:
         return float((begun + share) ** (1.0 / power))
 
     whole = rooted(1.0) - rooted(0.0)
-    for ratio in (0.5, 1.0, 2.0):
-        assert rooted(nodes.again(ratio)) - rooted(0.0) == pytest.approx(ratio * whole, rel=1e-12)
-        assert rooted(1.0 + nodes.following(ratio)) - rooted(1.0) == pytest.approx(ratio * whole, rel=1e-12)
-        other = radau(8).graded(power, begun, mirrored=True).again(ratio)
-        assert other == pytest.approx(1.0 - nodes.again(ratio), rel=1e-12, abs=1e-12)
-    assert nodes.again(1.0) * length == pytest.approx(length, rel=1e-14)
+    for ratio in (0.5, 1.0, 1.5):
+        rough = (CAUTION / ratio) ** STAGES
+        assert rooted(nodes.again(rough)) - rooted(0.0) == pytest.approx(ratio * whole, rel=1e-12)
+        assert rooted(1.0 + nodes.following(rough)) - rooted(1.0) == pytest.approx(ratio * whole, rel=1e-12)
+        other = radau(8).graded(power, begun, mirrored=True).again(rough)
+        assert other == pytest.approx(1.0 - nodes.again(rough), rel=1e-12, abs=1e-12)
+    assert nodes.again(CAUTION**STAGES) * length == pytest.approx(length, rel=1e-14)
+    for rough, longest in ((0.0, LONGEST), (1e30, SHORTEST)):
+        after = rooted(1.0 + nodes.following(rough)) - rooted(1.0)
+        assert after == pytest.approx(longest ** (1.0 / power) * whole, rel=1e-12)
 
 
 def marched(force: Callable[[Array], Array], span: tuple[float, float], first: float, **more: Any) -> HereditaryMarch:

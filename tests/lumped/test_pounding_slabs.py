@@ -10,7 +10,7 @@ import pytest
 from lumped.laws._force_law import ForceLaw, between_masses
 from lumped.pounding import Gap, PoundingFrames, ShearFrame, Sine, simulate
 from lumped.pounding.case_file import PoundingCase, read
-from lumped.pounding.slabs import Slab
+from lumped.pounding.frames import Slab
 from lumped.pounding.study import pounding
 from lumped.scene.scene import Scene
 from lumped.scene.tables import LawChoice

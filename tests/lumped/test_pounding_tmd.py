@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import asdict, replace
 from functools import cache
 from itertools import pairwise
 from typing import Any
@@ -21,7 +21,7 @@ from lumped.pounding.flow import FrameFlow
 from lumped.pounding.march import FrameMarch
 from lumped.pounding.trial import FrameTrial
 from lumped.ptmd import Memory, Oscillator, PoundingDamper, PtmdResult, PtmdRing, Start, simulate
-from lumped.ptmd.free_vibration import bodies_of
+from lumped.ptmd.system import bodies_of
 
 POLE, DAMPER = Oscillator(20.0, 7248.9, 7.615), Oscillator(1.67, 592.9, 0.6312)
 SOLID = of_ratios(E0=0.6e6, R1=0.5, R2=0.01)
@@ -514,8 +514,8 @@ def test_an_end_within_a_contact_leaves_energy_locked_in_the_ring(paper: PtmdRes
 @pytest.mark.tenth
 def test_the_steps_do_not_decide_what_is_found() -> None:
     found, again = (simulate(with_ring(lining()), BOTH, 4.0, tolerance=one).measures for one in (1e-7, 1e-10))
-    known = {name: value for name, value in found.to_dict().items() if value is not None}
-    assert {name: again.to_dict()[name] for name in known} == pytest.approx(known, rel=1e-9)
+    known = {name: value for name, value in asdict(found).items() if value is not None}
+    assert {name: asdict(again)[name] for name in known} == pytest.approx(known, rel=1e-9)
 
 
 # what a motion costs

@@ -14,7 +14,7 @@ from scipy.integrate import cumulative_trapezoid
 from lumped import BadInput, Result, Scene, laws, simulate
 from lumped.errors import NotReached
 from lumped.solvers import rod
-from lumped.solvers.rod import FlatImpact, RodPiece, RodScales, RodTravel, TippedImpact, Waves
+from lumped.solvers.rod import FlatImpact, RodPiece, TippedImpact, Waves
 
 # Mass over that of the rod, contact time over the transit of a wave: Timoshenko and Goodier, Theory of Elasticity,
 # art. 169, after St Venant.
@@ -36,7 +36,7 @@ def tipped(
 ) -> TippedImpact:
     depth = (0.5 * (power + 1.0) * mass / stiffness) ** (1.0 / (power + 1.0))
     force = lambda dent: stiffness * dent**power  # noqa: E731  # a law of one line
-    return TippedImpact(Waves(1.0, echo, 1.0), force, mass, 1.0, gravity, 8.0, RodScales(depth, depth), rtol)
+    return TippedImpact(Waves(1.0, echo, 1.0), force, mass, 1.0, gravity, 8.0, depth, depth, rtol)
 
 
 def run(scene: Scene, tolerance: float = 1e-6) -> Result:
@@ -79,9 +79,8 @@ def test_a_heavy_mass_finds_a_spring_and_every_echo_is_evaluated_once(monkeypatc
     impact, mass, read = flat(-1.0, 3000.0, until=1e3), 3000.0 + 1.0 / 3.0, list[object]()
     pieces, end, separated = impact.pieces
     times = np.linspace(0.0, end, 40 * len(pieces) + 1)
-    for kind in (RodPiece, RodTravel):
-        called = kind.__call__
-        monkeypatch.setattr(kind, "__call__", lambda self, s, called=called: read.append(self) or called(self, s))
+    called = RodPiece.__call__
+    monkeypatch.setattr(RodPiece, "__call__", lambda self, s: read.append(self) or called(self, s))
     depth, velocity, _, _ = impact.columns(times)
     assert separated
     assert len(pieces) > 80
@@ -156,14 +155,11 @@ def test_a_dent_s_impact_is_the_same_in_all_units(echo: float) -> None:
     """Steps, tolerances and all: of velocity, of mass and of time."""
     speed, heavier, longer, length = 3.0, 5.0, 0.25, 0.75
     one = tipped(echo, 1.5, 2.0, gravity=0.1, rtol=1e-8)
-    waves, scales = (
-        Waves(heavier / longer, echo, longer),
-        RodScales(length * one.scales.depth, longer * one.scales.time),
-    )
+    waves, scales = Waves(heavier / longer, echo, longer), (length * one.depth, longer * one.time)
     unit = heavier * speed / longer
     force = lambda dent: unit * one.force(dent / length)  # noqa: E731  # a law of one line
     gravity, until = 0.1 * speed / longer, 8.0 * longer
-    other = TippedImpact(waves, force, heavier * 1.5, speed, gravity, until, scales, one.rtol)
+    other = TippedImpact(waves, force, heavier * 1.5, speed, gravity, until, *scales, one.rtol)
     assert other.pieces[1:] == (pytest.approx(one.pieces[1] * longer, rel=1e-9), one.pieces[2])
     times, units = np.linspace(0.0, one.pieces[1] * 0.999, 50), np.array([length, speed, unit, speed])[:, None]
     scaled, known = other.columns(times * longer), units * one.columns(times)
@@ -175,8 +171,8 @@ def test_a_stiff_rod_is_the_half_space_it_is_dented_like() -> None:
     """Hertz's impact as the impedance grows; the loss falls as its inverse."""
     losses = []
     for impedance in (1e3, 1e4):
-        waves, scales = Waves(impedance, 0.0, 1.0), RodScales(1.0, 1.0)
-        impact = TippedImpact(waves, lambda d: d**1.5, 1.0, 1.0, 0.0, 50.0, scales, 1e-11)
+        waves = Waves(impedance, 0.0, 1.0)
+        impact = TippedImpact(waves, lambda d: d**1.5, 1.0, 1.0, 0.0, 50.0, 1.0, 1.0, 1e-11)
         _, end, _ = impact.pieces
         columns = impact.columns(np.linspace(0.0, end, 2001))
         assert end == pytest.approx(2.943275 * 1.25**0.4, rel=3.0 / impedance)

@@ -13,7 +13,7 @@ from fe_contact.studies import style
 from fe_contact.studies.pound.study import motions_of
 from fe_contact.studies.style import Look, prefixed, readable
 from lumped.pounding.frames import Gap
-from lumped.pounding.result import FramesResult
+from lumped.pounding.simulation import FramesResult
 from lumped.pounding.study import NO_CONTACT, PoundStudy
 
 PANEL, BETWEEN = 1.45, 0.62  # heights of a panel and of what is between two, in

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from fe_contact.studies.files import Line, lines_of, write_study
 from lumped.pounding.case_file import PoundingCase
-from lumped.pounding.result import FrameContact, FramesResult
+from lumped.pounding.simulation import FrameContact, FramesResult
 from lumped.pounding.study import NO_CONTACT, Pounding, PoundStudy
 from lumped.result.folder import publish
 from lumped.result.result import provenance

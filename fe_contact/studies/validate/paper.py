@@ -20,9 +20,8 @@ from fe_contact.studies.validate.base import (
     named,
 )
 from lumped.paper import Examples
-from lumped.paper.claims import JudgedClaim, counts, study
-from lumped.paper.rules import AGREES, UNDECIDED, UNKNOWN
-from lumped.paper.rules import DIFFERS as DIFFERING
+from lumped.paper.claims import AGREES, UNDECIDED, UNKNOWN, JudgedClaim, counts, study
+from lumped.paper.claims import DIFFERS as DIFFERING
 
 MOST = 3  # look: claims that the first screen names
 FIGURES = (

@@ -7,6 +7,7 @@ runs over the ground of one step of the approach, the last that is left; sought 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple, Protocol
@@ -40,17 +41,14 @@ AT_END = 1.0 - 1e-12  # rounding: of the end time, from which on it is reached
 SECANTS = 60  # work: of a step's mean velocity
 # The last correction of the rate; what is left after it is the product of two such.
 CONVERGED = 1e-9
-# Gauss' two points on (0, 1).
-GAUSS = (0.5 - 0.5 / math.sqrt(3.0), 0.5 + 0.5 / math.sqrt(3.0))
+GAUSS = (0.5 - 0.5 / math.sqrt(3.0), 0.5 + 0.5 / math.sqrt(3.0))  # Gauss' two points on (0, 1)
 # Work: steps tried for the separation; of the step, to which it is found; times it, most to try next.
 TRIES, CLOSE, WIDER = 100, 1e-7, 4.0
 WHOLE_STEPS = 4  # the finer of two marches needs two more than the coarser to get as far
 # Work: shares of a step at which a force is looked at.
 SAMPLES = (0.01, 0.03, 0.1, 0.3, 0.6, 0.9, 1.0)
-# What to try first at least, of the time so far.
-SHORT = 1e-14
-# A step that takes no time, s.
-LEAST = 1e-200
+SHORT = 1e-14  # what to try first at least, of the time so far
+LEAST = 1e-200  # a step that takes no time, s
 
 
 class Pace(Protocol):
@@ -87,16 +85,11 @@ class RowTrack:
     beyond: list[Instant]
 
 
-def march(problem: RowProblem, end_time: float, pace: Pace, most: int, at_rest: float = AT_REST) -> RowTrack:
-    """Follow one impact until separation or `end_time`, s.
-
-    `pace` is that of the approach. Raises NotReached, TooManySteps after `most` steps of it.
-    """
-    return rebound(approach(problem, end_time, pace, most, at_rest), end_time, doubted=True)
-
-
 def approach(problem: RowProblem, end_time: float, pace: Pace, most: int, at_rest: float = AT_REST) -> Inward:
-    """The approach, to where the velocity is zero, or has died away in a fluid. Raises as `march` does."""
+    """The approach at a `pace`, to where the velocity is zero, or has died away in a fluid; or to `end_time`, s.
+
+    Raises NotReached, TooManySteps after `most` steps.
+    """
     row = SpringsInRow(problem)
     touch = Instant(0.0, 0.0, problem.velocity, problem.gravity, 0.0, 0.0)
     slow = at_rest * problem.velocity if problem.is_fluid and problem.gravity == 0.0 else 0.0
@@ -110,24 +103,18 @@ def rebound(inward: Inward, end_time: float, doubted: bool = False) -> RowTrack:
 
     `doubted`: whether it may turn in a last step that `end_time` cuts.
     """
-    row, turn = inward.row, inward.instants[-1]
     if inward.end:
-        return _track(inward, [], inward.end)
-    if turn.acceleration >= 0.0:
-        return at_turn(inward)
-    found = retreat(row, turn, end_time, doubted)
-    return _track(inward, found.instants, found.end, found.beyond)
+        return ended(inward, inward.end)
+    if inward.instants[-1].acceleration >= 0.0:
+        return ended(inward, End.SECOND_APPROACH)
+    return retreat(inward, end_time, doubted)
 
 
-def at_turn(inward: Inward) -> RowTrack:
-    """An approach after which no rebound is followed."""
-    return _track(inward, [], End.SECOND_APPROACH)
-
-
-def _track(inward: Inward, outward: list[Instant], end: End, beyond: list[Instant] | None = None) -> RowTrack:
+def ended(inward: Inward, end: End, outward: Sequence[Instant] = (), beyond: Sequence[Instant] = ()) -> RowTrack:
+    """An approach and the rebound that was followed of it, as far as it was, with the energies then."""
     row, last = inward.row, (outward or inward.instants)[-1]
     held = row.springs.held(row.problem.modulus, last.depth, row.even)
-    return RowTrack(inward.instants, outward, end, 2.0 * row.spent, 2.0 * (row.released + held), beyond or [])
+    return RowTrack(inward.instants, [*outward], end, 2.0 * row.spent, 2.0 * (row.released + held), [*beyond])
 
 
 def _followed(
@@ -238,20 +225,12 @@ def _touched(row: SpringsInRow, now: Instant, h: float, rate: float) -> tuple[fl
     return width, min(max((depth - 0.5 * (low + high)) / rate, 0.0), h)
 
 
-class Retreat(NamedTuple):
-    """Its instants from the turn on, how it ended; whole steps past an end by time."""
-
-    instants: list[Instant]
-    end: End
-    beyond: list[Instant]
-
-
-def retreat(row: SpringsInRow, start: Instant, end_time: float, doubted: bool) -> Retreat:
+def retreat(inward: Inward, end_time: float, doubted: bool) -> RowTrack:
     """From the turn until the springs at the axis leave, the edge does not reach its next place, or `end_time`, s.
 
     Raises NotReached.
     """
-    track, paces = [start], [1.0]
+    row, track, paces = inward.row, inward.instants[-1:], [1.0]
     while len(row.places) > 1:
         now = track[-1]
         shrinking = Shrinking(row, now)
@@ -260,12 +239,12 @@ def retreat(row: SpringsInRow, start: Instant, end_time: float, doubted: bool) -
             beyond = _beyond(row.copy(), now, paces)
             last = shrinking.attempt(end_time - now.time)
             if tried is None and (last.velocity > 0.0 or (doubted and shrinking.turns_before(end_time))):
-                return Retreat(track, End.SECOND_APPROACH, [])
+                return ended(inward, End.SECOND_APPROACH, track)
             cut = shrinking.step(last)
             row.take(cut)
-            return Retreat([*track, cut.now], End.TIME, beyond)
+            return ended(inward, End.TIME, [*track, cut.now], beyond)
         track.append(_taken(row, shrinking, tried, paces))
-    return Retreat(track, End.SEPARATED, [])
+    return ended(inward, End.SEPARATED, track)
 
 
 def _taken(row: SpringsInRow, shrinking: Shrinking, tried: Attempt, paces: list[float]) -> Instant:

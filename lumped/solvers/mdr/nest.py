@@ -18,7 +18,7 @@ from lumped.numbers import Array, local
 from lumped.result.history import End
 from lumped.scene.geometry import stiffest_impact
 from lumped.scene.scene import Scene
-from lumped.solvers.mdr.march import Inward, RowTrack, approach, at_turn, march, rebound
+from lumped.solvers.mdr.march import Inward, RowTrack, approach, ended, rebound
 from lumped.solvers.mdr.row import Instant, RowProblem
 
 # Work: marches until the turn falls on a step; safety: the secant's slope is no flatter.
@@ -66,7 +66,7 @@ class Adaptive:
     def accepts(self, now: Instant, then: Instant) -> bool:
         h = then.time - now.time
         # An error grows as h^3, the travel as h: cubed, both ask for a step in the same way.
-        share = max(self._error(now, then, h), (CAUTION * self._travel(now, then)) ** 3)
+        share = max(self.error(self.before, now, then), (CAUTION * self._travel(now, then)) ** 3)
         factor = GROWTH if share <= 0.0 else min(GROWTH, max(SHRINKAGE, CAUTION * share ** (-1.0 / 3.0)))
         self.h = h * factor
         if share > 2.0:
@@ -74,12 +74,10 @@ class Adaptive:
         self.before = now
         return True
 
-    def _error(self, now: Instant, then: Instant, h: float) -> float:
-        """Estimated error of the step over the tolerance."""
-        return 0.0 if self.before is None else self.error(self.before, now, then)
-
-    def error(self, before: Instant, now: Instant, then: Instant) -> float:
-        """Estimated error of the step between the last two of three instants over the tolerance."""
+    def error(self, before: Instant | None, now: Instant, then: Instant) -> float:
+        """Estimated error of the step between the last two of three instants over the tolerance; zero of the first."""
+        if before is None:
+            return 0.0
         h, back = then.time - now.time, now.time - before.time
         if not h > 0.0 or not back > 0.0:
             return 0.0
@@ -119,7 +117,8 @@ def problem_of(scene: Scene) -> RowProblem:
 
 def coarse(problem: RowProblem, end_time: float, elements: int) -> RowTrack:
     """One march with steps by their error and by the travel of the edge, 1/elements. Raises NotReached."""
-    return march(problem, end_time, pace_of(problem, end_time, elements), MOST_STEPS)
+    inward = approach(problem, end_time, pace_of(problem, end_time, elements), MOST_STEPS)
+    return rebound(inward, end_time, doubted=True)
 
 
 def coarse_beyond(problem: RowProblem, end_time: float, elements: int) -> tuple[RowTrack, float]:
@@ -225,15 +224,15 @@ class Nest:
         And when one of half as many steps turns, s: it tells when the finer ones will.
         """
         times = self.grid.times(turn, 1)
-        inward, half = self._approach(times), self._approach(times[1::2])
+        inward, half = self._approach(times, self.end_time), self._approach(times[1::2], self.end_time)
         level = self._level(self._back(inward), times, len(inward.instants) + len(half.instants))
         return replace(self, grid=Grid.through(inward.instants)), level, half.instants[-1].time
 
-    def _approach(self, times: list[float]) -> Inward:
-        return approach(self.problem, self.end_time, Prescribed(times), 2 * len(times), at_rest=0.0)
+    def _approach(self, times: list[float], end: float) -> Inward:
+        return approach(self.problem, end, Prescribed(times), 2 * len(times), at_rest=0.0)
 
     def _back(self, inward: Inward) -> RowTrack:
-        return at_turn(inward) if self.turns else rebound(inward, self.end_time)
+        return ended(inward, End.SECOND_APPROACH) if self.turns else rebound(inward, self.end_time)
 
     def level(self, parts: int, turn: float) -> Level:
         """March with every step cut into `parts`, again with a better time of the turn, s, until that is met.
@@ -243,7 +242,7 @@ class Nest:
         steps, tried, missed = 0, 0.0, 0.0
         for _ in range(ALIGNING_TRIES):
             times = self.grid.times(turn, parts)
-            inward = self._approach(times)
+            inward = self._approach(times, self.end_time)
             steps += len(inward.instants)
             *_, before, last = (instant.time for instant in inward.instants)
             if len(inward.instants) == len(times) + 1 and abs(last - turn) <= NEARLY * (last - before):
@@ -259,17 +258,13 @@ class Nest:
             raise NotReached("steps of the spring row finer than the first ones see its edge turn; cure: --method ting")
         steps += len(track.rebound) + len(track.beyond)
         outward = [*track.rebound[:-1], *track.beyond] if track.beyond else track.rebound
-        ended = track if self.cut is None else self._ended(times, self.cut)
-        mass, last = self.problem.mass, (ended.rebound or ended.approach)[-1]
+        whole = track if self.cut is None else rebound(self._approach(times, self.cut), self.cut)
+        mass, last = self.problem.mass, (whole.rebound or whole.approach)[-1]
         motion = [mass * self.problem.gravity * last.depth, 0.5 * mass * last.velocity**2]
-        energies = np.array([*motion, ended.spent, ended.held])
+        energies = np.array([*motion, whole.spent, whole.held])
         end = End.REST if self.rests else track.end
         stop = np.array(last, dtype=float)
         return Level(_columns(track.approach), _columns(outward), stop, end, last.time, steps, energies)
-
-    def _ended(self, times: list[float], cut: float) -> RowTrack:
-        """The march of these steps to where the history ends."""
-        return rebound(approach(self.problem, cut, Prescribed(times), 2 * len(times), at_rest=0.0), cut)
 
 
 def predicted_turn(before: float, last: float) -> float:

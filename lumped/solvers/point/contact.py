@@ -12,7 +12,7 @@ import numpy as np
 from lumped.errors import TooManySteps
 from lumped.numbers import Array
 from lumped.result.history import AT_REST, End
-from lumped.solvers.point.bodies import Bodies, PointLaw, Stage, State, Step
+from lumped.solvers.point.bodies import Bodies, PointLaw, Stage, State
 from lumped.solvers.point.phase import Event, PointMarch, PointPhase
 from lumped.solvers.radau import STAGES
 
@@ -118,15 +118,18 @@ def _corner(stage: Stage, corners: tuple[float, ...]) -> dict[str, Event]:
     return {"corner": Event(lambda step: sign * (depth - step.depth), lambda step: -sign * step.end.rate)}
 
 
-def _force_left(step: Step) -> Array:
+def force_left(depth: Array, force: Array) -> Array:
     """The force as long as there is depth; above the surface its mean stiffness times the depth goes on."""
-    return np.asarray(np.where(step.depth > 0.0, step.force, step.depth * (step.force.max() / step.depth.max())))
+    beyond = force.max() / depth.max() if depth.max() > 0.0 else 1.0
+    return np.asarray(np.where(depth > 0.0, force, beyond * depth))
 
 
 TURN = Event(lambda step: step.rate, lambda step: step.last_acceleration)
 TURN_BACK = Event(lambda step: -step.rate, lambda step: -step.last_acceleration)
 DEPTH_LEFT = Event(lambda step: step.depth, lambda step: step.end.rate, surfaces=True)
-FORCE_LEFT = Event(_force_left, lambda step: step.last_slope(step.force), rough=True)
+FORCE_LEFT = Event(
+    lambda step: force_left(step.depth, step.force), lambda step: step.last_slope(step.force), rough=True
+)
 
 
 @dataclass(frozen=True)

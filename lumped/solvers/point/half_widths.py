@@ -123,9 +123,13 @@ def _l2(found: list[Deviation]) -> float:
 @cache
 def _slopes() -> Array:
     """The slopes over the place, at the nodes, of what has these values there, shape (S, S)."""
+    return np.asarray(_rises(NODES.points.size).T @ NODES.series)
+
+
+def _rises(count: int) -> Array:
+    """The slopes over the place, at the nodes, of the first Legendre polynomials, shape (count, S)."""
     x = 2.0 * NODES.places - 1.0
-    rows = [2.0 * legendre.legval(x, legendre.legder(row)) for row in np.eye(x.size)]
-    return np.array(rows).T @ NODES.series
+    return np.array([2.0 * legendre.legval(x, legendre.legder(row)) for row in np.eye(count)])
 
 
 class Deviation(NamedTuple):
@@ -200,6 +204,4 @@ def _in_a_row(depths: Array, rates: Array, start: tuple[float, float]) -> tuple[
 @cache
 def _terms() -> tuple[Array, Array]:
     """P_0 to P_s and their slopes over the place, shape (s + 1, S)."""
-    x = 2.0 * NODES.places - 1.0
-    slopes = np.array([2.0 * legendre.legval(x, legendre.legder(row)) for row in np.eye(STAGES + 1)])
-    return legendre_terms(x), slopes
+    return legendre_terms(2.0 * NODES.places - 1.0), _rises(STAGES + 1)

@@ -18,8 +18,7 @@ from lumped.materials import Recovery, Relaxation
 from lumped.numbers import Array, Real, bisected
 from lumped.schema.members import unavailable
 from lumped.solvers.point.bodies import Bodies, State, flown, time_to_return
-from lumped.solvers.point.phase import NODES
-from lumped.solvers.radau import Nodes
+from lumped.solvers.radau import NODES, Nodes
 
 STEPS = 16  # in a stretch of the flight, for the memory of what is followed above the surface
 

@@ -19,9 +19,8 @@ from lumped.numbers import Array
 from lumped.progress import step_done
 from lumped.result.history import AT_REST
 from lumped.solvers.point.bodies import TINY, Bodies, PointLaw, Stage, State, Step
-from lumped.solvers.radau import STAGES, Nodes, radau
+from lumped.solvers.radau import NODES, SHORTEST, STAGES, Nodes
 
-NODES = radau(STAGES)
 ITERATIONS = 12  # work: Newton's, of one step
 # Newton's last correction times its ratio to the one before is more than what is left; relative to the largest gain
 # and to the gain that would change the rate by as much as it is.
@@ -34,8 +33,6 @@ PRECISE = 1e-14  # of the time reached: where an event lies
 # Rounding: of a step's length, by which it still changes where it ends with an event; so much of the change before is
 # left of what falls no more.
 ROUNDED, NO_BETTER = 1e-6, 0.5
-# Safety: least and most of the next step over this one, and the share of what is allowed.
-SHORTEST, LONGEST, CAUTION = 0.1, 5.0, 0.8
 # So much rougher than allowed a step need not be located any better to be refused.
 HOPELESS = 2.0
 
@@ -154,14 +151,14 @@ class PointMarch:
                 continue
             rough = roughness(step) / self.allowed
             if rough > 1.0:
-                length = step.length * step.nodes.again(_ratio(rough, step.nodes.power))
+                length = step.length * step.nodes.again(rough)
                 continue
             steps.append(step)
             now, state = now + step.length, step.end
             event = event or ("rest" if self._rests(state) else None)
             if event is not None or now >= self.until * (1.0 - PRECISE):
                 return PointPhase(self.stage, time, tuple(steps), event)
-            length = step.length * nodes.following(_ratio(rough, power))
+            length = step.length * nodes.following(rough)
             guess = step.last_acceleration + step.last_slope(step.gain / step.nodes.pace) * length * NODES.points
         raise TooManySteps(
             f"contact: {MOST_STEPS} time steps reach {now:.3g} s of {self.until:.3g} s; "
@@ -242,9 +239,3 @@ def _expected(step: Step, values: Array) -> float:
     low, at_low = (float(step.nodes.points[after - 1]), float(values[after - 1])) if after else (0.0, -at_high)
     share = high - at_high * (high - low) / (at_high - at_low) if at_high != at_low else high
     return share * step.length
-
-
-def _ratio(rough: float, power: int) -> float:
-    """How much longer the root of the next step may be: the last Legendre terms fall with the power s of it."""
-    ratio = CAUTION * rough ** (-1.0 / STAGES) if rough > 0.0 else LONGEST
-    return float(min(max(ratio, SHORTEST ** (1.0 / power)), LONGEST ** (1.0 / power)))
