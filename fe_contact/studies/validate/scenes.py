@@ -12,23 +12,9 @@ from pathlib import Path
 from fe_contact.methods import FE
 from fe_contact.studies import journal
 from fe_contact.studies.files import Line, write_study
+from fe_contact.studies.validate import base
 from fe_contact.studies.validate._scenes import SceneAnswer, answered, chosen, largest
-from fe_contact.studies.validate.base import (
-    DIFFERS,
-    HOLDS,
-    LARGER,
-    VERIFIED,
-    Column,
-    Figure,
-    Headline,
-    Listing,
-    Made,
-    ReportPart,
-    Request,
-    Section,
-    Worst,
-    named,
-)
+from fe_contact.studies.validate.base import Column
 from lumped.numbers import Array
 from lumped.result.result import Quantity
 from lumped.schema.csv_file import write_columns
@@ -41,7 +27,7 @@ MOST = 2  # look: scenes that the first screen names of a kind
 TOLD = ("peak_force", "peak_depth", "duration", "restitution")
 
 
-def make(asked: Request) -> Made:
+def make(asked: base.Request) -> base.Made:
     """All scenes; rows are kept one by one."""
     names = chosen(asked.quick)
     calls = {name: partial(answered, name) for name in names}
@@ -49,47 +35,51 @@ def make(asked: Request) -> Made:
     return of_answers([found[name] for name in sorted(names)], [*sorted({*SCENES.names} - {*names})])
 
 
-def of_answers(found: Sequence[SceneAnswer], left_out: Sequence[str] = ()) -> Made:
+def of_answers(found: Sequence[SceneAnswer], left_out: Sequence[str] = ()) -> base.Made:
     """The section of such answers, and of the scenes that were not asked."""
-    return Made(
-        Section(
+    return base.Made(
+        base.Section(
             headlines(found),
             tuple(sentences(found, left_out)),
-            (Figure("scenes", "Error over its bar, quantity by quantity, against the exact answer", ("checks.csv",)),),
+            (
+                base.Figure(
+                    "scenes", "Error over its bar, quantity by quantity, against the exact answer", ("checks.csv",)
+                ),
+            ),
             (SCENES_TABLE, CHECKS_TABLE),
             _worst(found),
             HISTORIES,
             missed="; ".join(short(found)),
         ),
-        partial(write, found),
+        (partial(write, found),),
     )
 
 
-def headlines(found: Sequence[SceneAnswer]) -> tuple[Headline, ...]:
+def headlines(found: Sequence[SceneAnswer]) -> tuple[base.Headline, ...]:
     """What was held against what and whether it held; which scenes need a larger model."""
     held = [one for one in found if one.exact]
     elements = [one for one in found if one.method == FE]
     apart = [one.scene for one in held if not one.agrees]
     names = ", ".join(sorted({one.exact.replace("_", " ") for one in held}))
-    but = f", all but {named(apart, MOST)}" if apart else ""
+    but = f", all but {base.named(apart, MOST)}" if apart else ""
     said = (
         f"{len(held) - len(apart)} of {len(held)} scenes by finite elements agree with an exact answer ({names}) "
         f"within both error bars{but}; {len(elements) - len(held)} more have an error bar, and no exact answer."
     )
-    return Headline(DIFFERS if apart else VERIFIED, said), _model(found)
+    return base.Headline(base.DIFFERS if apart else base.VERIFIED, said), _model(found)
 
 
-def _model(found: Sequence[SceneAnswer]) -> Headline:
+def _model(found: Sequence[SceneAnswer]) -> base.Headline:
     """Which scenes need a larger model, by what it would follow."""
     needed = defaultdict[str, list[str]](list)
     for one in sorted(found, key=lambda one: -(one.estimate or 0.0)):
         if one.larger:
             needed[one.larger].append(one.scene)
     if not needed:
-        return Headline(HOLDS, "No scene needs a larger model at its tolerance.")
-    said = "; ".join(f"{effect}: {named(names, MOST)}" for effect, names in needed.items())
+        return base.Headline(base.HOLDS, "No scene needs a larger model at its tolerance.")
+    said = "; ".join(f"{effect}: {base.named(names, MOST)}" for effect, names in needed.items())
     count = sum(map(len, needed.values()))
-    return Headline(LARGER, f"{count} of {len(found)} scenes need a larger model at their tolerance. {said}.")
+    return base.Headline(base.LARGER, f"{count} of {len(found)} scenes need a larger model at their tolerance. {said}.")
 
 
 def sentences(found: Sequence[SceneAnswer], left_out: Sequence[str]) -> list[str]:
@@ -109,16 +99,16 @@ def short(found: Sequence[SceneAnswer]) -> list[str]:
     return [*failed, *(f"{one.scene}: {one.missed}" for one in found if one.missed)]
 
 
-def _worst(found: Sequence[SceneAnswer]) -> Worst | None:
+def _worst(found: Sequence[SceneAnswer]) -> base.Worst | None:
     pairs = [(one, move) for one in found for move in one.differences]
     if not pairs:
         return None
     one, most = max(pairs, key=lambda pair: math.inf if pair[1].moved is None else pair[1].moved)
     place = f"{one.scene}, {most.quantity} against {one.exact}".replace("_", " ")
-    return Worst(most.moved, len(pairs), place)
+    return base.Worst(most.moved, len(pairs), place)
 
 
-SCENES_TABLE = Listing(
+SCENES_TABLE = base.Listing(
     "scenes.csv",
     "Every scene, its answer and its bars",
     (
@@ -136,7 +126,7 @@ SCENES_TABLE = Listing(
         Column("key", "selected by"),
     ),
 )
-CHECKS_TABLE = Listing(
+CHECKS_TABLE = base.Listing(
     "checks.csv",
     "Every quantity against its exact answer",
     (
@@ -218,7 +208,7 @@ def _rounded(column: Array) -> list[float]:
     return [float(f"{value:.{DIGITS}g}") for value in column]
 
 
-MEMBER = ReportPart(
+MEMBER = base.ReportPart(
     rank=10,
     title="Packaged scenes",
     question="Do finite elements give the exact answer, where there is one, within the error bar that they claim?",
