@@ -8,7 +8,7 @@ import json
 import os
 import re
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
@@ -145,6 +145,15 @@ def read_indenter(args: argparse.Namespace) -> tuple[Indenter, Table]:
     return _read(args, partial(load_indenter, Indenter))
 
 
+def pairs(texts: Iterable[str], option: str, accepted: str) -> Iterator[tuple[str, str]]:
+    """`KEY=VALUE`, each as a pair. Raises BadInput, which says what is `accepted`."""
+    for text in texts:
+        key, sign, value = (part.strip() for part in text.partition("="))
+        if not sign or not key:
+            raise BadInput(Fault(option, text, accepted))
+        yield key, value
+
+
 def _read(args: argparse.Namespace, reader: Callable[..., tuple[Read, Table]]) -> tuple[Read, Table]:
     overrides = overrides_of(args)
     try:
@@ -263,12 +272,11 @@ class StudyRun:
     ) -> int:
         """Publish files and charts, say what was found, complain of what missed its tolerance; the exit code."""
 
-        def written(where: Path) -> None:
-            write(where)
+        def draw(where: Path) -> None:
             self.progress("chart")
             plot(where)
 
-        content, told = publish(self.where, written, record)
+        content, told = publish(self.where, write, draw, record=record)
         say(self.args, content, [*lines, told], title)
         if missed:
             complain(missed)
@@ -287,12 +295,12 @@ def finite_exponents(args: argparse.Namespace, study: str, rows: Callable[[], Se
     return run.finish(f"{study}_finite.json", told(found), write, plot)
 
 
-def publish(where: Path, write: Callable[[Path], object], record: str = RECORD) -> tuple[Table, str]:
-    """What `write` leaves in the folder it is given becomes the results, all at once, `record` being the JSON file that
+def publish(where: Path, *writers: Callable[[Path], object], record: str = RECORD) -> tuple[Table, str]:
+    """What these leave in the folder they are given becomes the results, all at once, `record` being the JSON file that
     names them; its content, and a line that says where. Raises CannotWrite.
     """
     older = (where / record).is_file()
-    content = publish_files(where, write, record)
+    content = publish_files(where, lambda folder: [write(folder) for write in writers], record)
     return content, f"written to {where}{', in place of older results' if older else ''}"
 
 

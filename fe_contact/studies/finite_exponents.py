@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
@@ -273,10 +273,7 @@ def _depths(found: Departures, energy: str) -> list[Line]:
 def _described(found: Departures) -> Table:
     """One row of the record."""
     row = found.row
-    ends = {
-        energy: {f"{limit:g}": (end := found.end(energy, limit)) and asdict(end) for limit in LIMITS}
-        for energy in found.large
-    }
+    ends = {energy: {f"{limit:g}": found.end(energy, limit) for limit in LIMITS} for energy in found.large}
     return {
         "row": row.label,
         "scene": row.indenter.to_dict(),

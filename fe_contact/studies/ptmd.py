@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from pathlib import Path
 
 from fe_contact.studies.files import Line, lines_of, write_study
@@ -39,7 +38,7 @@ def write_ptmd(study: PtmdStudy, where: Path) -> Table:
         "measures": main.measures.to_dict(),
         "energy": main.energy.to_dict(),
         "variants": {name: result.measures.to_dict() for name, result in study.results.items()},
-        "convergence": asdict(study.convergence),
+        "convergence": study.convergence,
         "model_ledger": [entry.to_json(SMALL) for entry in study.ledger],
         "provenance": provenance(),
     }

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -314,7 +314,7 @@ def _described(curve: RingCurve) -> Table:
         "contact_modulus": curve.found.modulus,
         "instantaneous_modulus": indenter.modulus(True),
         "converged": curve.found.converged,
-        "verdict": asdict(verdict(curve)),
+        "verdict": verdict(curve),
         "model_ledger": [entry.to_json(curve.found.tolerance) for entry in curve.ledger],
         "error_budget": {cause: float(np.max(error)) for cause, error in curve.found.budget.items()},
     }
