@@ -22,7 +22,7 @@ from fe_contact.progress import Progress, silent
 from fe_contact.reference import fe
 from fe_contact.studies import journal
 from fe_contact.studies.files import Line, lines_of, write_study
-from fe_contact.studies.finite_exponents import SHARES, StrainedRow, local_exponent
+from fe_contact.studies.finite_exponents import SHARES, StrainedRow, local_exponent, zero_after
 from lumped.indentation import Indentation
 from lumped.materials import Material, Relaxation
 from lumped.materials.networks import sls
@@ -187,10 +187,7 @@ def _crossing(curve: RingCurve) -> float | None:
     """Depth at which the factor passes one, m, on a straight line in logarithms."""
     x, y = np.log(curve.found.depth), np.log(curve.factor)
     passed = np.flatnonzero(y[:-1] * y[1:] <= 0.0)
-    if not passed.size:
-        return None
-    i = int(passed[0])
-    return float(np.exp(x[i] - y[i] * (x[i + 1] - x[i]) / (y[i + 1] - y[i])))
+    return float(np.exp(zero_after(x, y, int(passed[0])))) if passed.size else None
 
 
 @dataclass(frozen=True, eq=False)

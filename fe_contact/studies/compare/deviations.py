@@ -95,9 +95,8 @@ class Told:
 
 def force_errors(told: Told, candidate: History | Measured) -> dict[str, float | None]:
     """``held_until_max_depth`` relative to the reference's peak; ``history``, norm over norm."""
-    times = (
-        _between_jumps(np.union1d(told.time, candidate.time)) if told.jumps else np.union1d(told.time, candidate.time)
-    )
+    every = np.union1d(told.time, candidate.time)
+    times = _between_jumps(every) if told.jumps else every
     force = told.force(times)
     difference = np.abs(candidate.force_at(times) - force)
     norms = np.trapezoid(difference**2, times) / np.trapezoid(force**2, times)

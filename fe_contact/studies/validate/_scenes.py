@@ -75,7 +75,7 @@ class SceneAnswer:
 
 
 def largest(found: Sequence[Move]) -> float:
-    return max((math.inf if one.moved is None else one.moved for one in found), default=math.nan)
+    return max((one.size for one in found), default=math.nan)
 
 
 def answered(name: str) -> SceneAnswer:

@@ -103,7 +103,7 @@ def _worst(found: Sequence[SceneAnswer]) -> base.Worst | None:
     pairs = [(one, move) for one in found for move in one.differences]
     if not pairs:
         return None
-    one, most = max(pairs, key=lambda pair: math.inf if pair[1].moved is None else pair[1].moved)
+    one, most = max(pairs, key=lambda pair: pair[1].size)
     place = f"{one.scene}, {most.quantity} against {one.exact}".replace("_", " ")
     return base.Worst(most.moved, len(pairs), place)
 
