@@ -21,7 +21,7 @@ from lumped.fit.record import LEVEL
 from lumped.result.score import Curve
 
 PANELS = 3.1  # height of the two panels with what is between them, in
-TITLE_WIDTH, WIDE_TITLE = 74, 128  # characters: over one fit, over all
+TITLE_WIDTH = 74  # characters: over one fit
 MOST_DIGITS = 7  # look: significant digits of a value, at most
 MOST_POINTS = 400  # a denser curve is drawn as a line
 COLUMNS, HEIGHT = 4, 1.35  # of all laws: panels beside each other; in, of one of them with what is below it
@@ -90,7 +90,7 @@ def plot_ranking(ranked: Sequence[RankedFit], curve: Curve, where: Path) -> tupl
     lines = ["grey: curve; orange: law; blue: the curve less the law, enlarged as told. AICc over that of the best law"]
     lines += [f"without a fit: {left_out}"] if left_out else []
     size = rows * HEIGHT
-    with style.sheet(where, "fits", "every law, fitted", lines, size, width=WIDE_TITLE, above=0.34) as sheet:
+    with style.sheet(where, "fits", "every law, fitted", lines, size, above=0.34) as sheet:
         panels = sheet.panels(rows, COLUMNS, 0.085, 0.985, hspace=0.62, wspace=0.12)
         for i, (axes, one) in enumerate(zip(panels, shown, strict=False)):
             _panel(axes, one, curve)

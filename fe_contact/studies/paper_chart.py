@@ -26,7 +26,6 @@ from lumped.paper.value import MICRO
 from lumped.result.history import History
 from lumped.result.result import Result
 
-TITLE_WIDTH = 130  # characters
 POINTS = 401  # of a curve
 HEIGHT_6, HEIGHT_GRID, HEIGHT_9, HEIGHT_10, HEIGHT_15 = 3.7, 5.4, 3.5, 3.3, 3.3  # in
 THIN: Look = {"linewidth": 0.6, "alpha": 0.75}  # look
@@ -86,7 +85,7 @@ def _fig6(study: PaperStudy, where: Path) -> tuple[Path, Path]:
         f"Dotted: the measured peak, {steel.measured_peak:g} N, which damped curves have too. Along them: e, which the "
         "paper does not print."
     ]
-    style.heading(figure, "Fig. 6 drawn again: the steel ball", lines, TITLE_WIDTH)
+    style.heading(figure, "Fig. 6 drawn again: the steel ball", lines)
     return _saved(figure, where, "fig6")
 
 
@@ -133,7 +132,7 @@ def _grid(study: PaperStudy, number: int, where: Path) -> tuple[Path, Path]:
         axes.set_ylabel("force, N")
     figure.legend(handles=LAW_KEY, loc="lower center", ncols=2)
     lines = ["The law of the paper, and what it approximates in the rebound; until the deepest instant they are one."]
-    style.heading(figure, f"Fig. {number} drawn again: the steel ball, {varied} varied", lines, TITLE_WIDTH)
+    style.heading(figure, f"Fig. {number} drawn again: the steel ball, {varied} varied", lines)
     return _saved(figure, where, f"fig{number}")
 
 
@@ -175,7 +174,7 @@ def _fig9(examples: Examples, where: Path) -> tuple[Path, Path]:
         "Over peak and time of the proposed model; damped curves have its peak. Along them: e, which the paper does "
         "not print, nor does its text hold the measured curve."
     ]
-    style.heading(figure, f"Fig. 9 drawn again: concrete at {velocity:g} m/s", lines, TITLE_WIDTH)
+    style.heading(figure, f"Fig. 9 drawn again: concrete at {velocity:g} m/s", lines)
     return _saved(figure, where, "fig9")
 
 
@@ -214,7 +213,7 @@ def _fig10(examples: Examples, where: Path) -> tuple[Path, Path]:
         f"Dotted: the measured peak, by the printed errors of {100 * concrete.peak_error:g} and "
         f"{100 * concrete.jankowski_peak_error:g} %. Cut, the striker leaves as fast as uncut."
     ]
-    style.heading(figure, f"Fig. 10 drawn again: concrete at {fast:g} m/s", lines, TITLE_WIDTH)
+    style.heading(figure, f"Fig. 10 drawn again: concrete at {fast:g} m/s", lines)
     return _saved(figure, where, "fig10")
 
 
@@ -238,7 +237,7 @@ def _fig15(examples: Examples, where: Path) -> tuple[Path, Path]:
         f"Steel ball, R2 = {R2}. Out of contact the law lets the load depth^1.5 of the surface fall as exp(-t/R2); by "
         "finite elements the depth of its tip falls so, from less."
     ]
-    style.heading(figure, "Fig. 15 as numbers: memory between contacts", lines, TITLE_WIDTH)
+    style.heading(figure, "Fig. 15 as numbers: memory between contacts", lines)
     return _saved(figure, where, "fig15")
 
 

@@ -15,7 +15,6 @@ from fe_contact.studies.style import Look, prefixed, readable
 from lumped.ptmd.study import BARE, FULL, PLAIN, PtmdStudy
 
 PANEL = 1.35  # height of a panel, in
-TITLE_WIDTH = 130  # characters
 LINES: dict[str, Look] = {
     BARE: {"color": style.GREY, "linewidth": 0.8},
     PLAIN: {"color": style.ORANGE, "linewidth": 0.9, "linestyle": (0, (4, 1.6))},
@@ -33,7 +32,7 @@ def plot_study(study: PtmdStudy, where: Path) -> tuple[Path, Path]:
     lines = _lines(study)
     title = f"{study.case.name}: {next(iter(study.results))}"
     height = PANEL * len(drawings) + 0.5 * (len(drawings) - 1)
-    with style.sheet(where, "ptmd", title, lines, height, width=TITLE_WIDTH, above=0.38) as sheet:
+    with style.sheet(where, "ptmd", title, lines, height, above=0.38) as sheet:
         panels = sheet.figure.subplots(len(drawings), 1, sharex=True, squeeze=False)[:, 0]
         sheet.figure.subplots_adjust(0.085, sheet.bottom, 0.975, sheet.top, hspace=0.5 / PANEL)
         for draw, axes, letter in zip(drawings, panels, "abcd", strict=False):

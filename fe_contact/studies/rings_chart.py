@@ -16,7 +16,6 @@ from lumped.paper.ring_impacts import force
 from lumped.scene.scene import Scene
 from lumped.scene.tables import LawChoice
 
-TITLE_WIDTH = 132  # characters
 PANEL = 2.7  # height, in
 LINES = [
     "Finite elements, bars within the lines' width where none is seen. Left: F over (pi/4) E* l depth, 1 (dotted) "
@@ -44,7 +43,7 @@ def plot_rings(curves: Sequence[RingCurve], where: Path, impacts: Sequence[RingS
 def _fig12(impacts: Sequence[RingStruck], where: Path) -> tuple[Path, Path]:
     fastest = {one.ring: one for one in sorted(impacts, key=lambda one: one.velocity)}
     title = "Fig. 12 drawn again on the ring"
-    with style.sheet(where, "fig12", title, STRUCK_LINES, PANEL, width=TITLE_WIDTH) as sheet:
+    with style.sheet(where, "fig12", title, STRUCK_LINES, PANEL) as sheet:
         panels = sheet.panels(1, len(fastest), 0.075, 0.985, wspace=0.22)
         for axes, letter, one in zip(panels, "ab", fastest.values(), strict=False):
             _struck(axes, one)
@@ -73,7 +72,7 @@ def _struck(axes: Axes, one: RingStruck) -> None:
 
 def _pressed(curves: Sequence[RingCurve], where: Path) -> tuple[Path, Path]:
     title = "Rings pressed slowly against the paper's row"
-    with style.sheet(where, "ring", title, LINES, PANEL, width=TITLE_WIDTH) as sheet:
+    with style.sheet(where, "ring", title, LINES, PANEL) as sheet:
         left, right = sheet.panels(1, 2, 0.075, 0.985, wspace=0.22)
         for colour, curve in zip((*style.CYCLE, style.BLACK), curves, strict=False):
             look: Look = {"color": colour, "marker": "o", "markersize": 2.4, "linewidth": 1.0}

@@ -21,7 +21,6 @@ from fe_contact.studies.exponents.study import Exponents
 from fe_contact.studies.style import Look
 
 PANEL, BIAS_PANEL = 2.35, 1.75  # height of a panel, in: on layers, of impacts
-TITLE_WIDTH = 132  # characters
 ROWS = ("cone", "sphere", "cylinder")
 DASHED, DOTTED = (0, (4, 2)), ":"
 COLOURS = {
@@ -59,7 +58,7 @@ def plot_layers(curves: Sequence[ExponentCurve], checks: Sequence[Check], where:
     """Write ``exponents.svg`` and ``exponents.png`` into the folder ``where``; their paths."""
     rows = len(ROWS) + 1
     title = "Exponents between half-space and thin layer"
-    with style.sheet(where, "exponents", title, LAYER_LINES, rows * PANEL, width=TITLE_WIDTH) as sheet:
+    with style.sheet(where, "exponents", title, LAYER_LINES, rows * PANEL) as sheet:
         panels = iter(sheet.panels(rows, 2, 0.075, 0.985, wspace=0.22, hspace=0.34))
         letters = iter("abcdefgh")
         for name in ROWS:
@@ -146,7 +145,7 @@ def plot_impacts(found: Sequence[ImpactExponents], where: Path) -> tuple[Path, P
     columns = _columns(found)
     title = "Exponents read from impacts on a viscoelastic body"
     height = len(READERS) * BIAS_PANEL
-    with style.sheet(where, "exponents_from_impacts", title, IMPACT_LINES, height, width=TITLE_WIDTH) as sheet:
+    with style.sheet(where, "exponents_from_impacts", title, IMPACT_LINES, height) as sheet:
         panels = sheet.panels(len(READERS), len(columns), 0.08, 0.985, wspace=0.28, hspace=0.3)
         for place, axes in enumerate(panels):
             reader, (name, own) = list(READERS)[place // len(columns)], list(columns.items())[place % len(columns)]

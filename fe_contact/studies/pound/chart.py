@@ -17,7 +17,6 @@ from lumped.pounding.result import FramesResult
 from lumped.pounding.study import NO_CONTACT, PoundStudy
 
 PANEL, BETWEEN = 1.45, 0.62  # heights of a panel and of what is between two, in
-TITLE_WIDTH = 130  # characters
 WITHOUT: Look = {"color": style.GREY, "linestyle": (0, (3, 1.5)), "linewidth": 0.9}
 MARKERS = "osD^vP"
 
@@ -27,7 +26,7 @@ def plot_study(study: PoundStudy, where: Path, beside: Sequence[str] = ()) -> tu
     gaps = list(study.case.frames.gaps)
     rows, lines = 3 if gaps else 2, [*_lines(study), *beside]
     height = PANEL * rows + BETWEEN * (rows - 1)
-    with style.sheet(where, "pound", study.case.name, lines, height, width=TITLE_WIDTH, above=0.38) as sheet:
+    with style.sheet(where, "pound", study.case.name, lines, height, above=0.38) as sheet:
         grid = sheet.grid(rows, 1, 0.085, 0.975, hspace=BETWEEN / PANEL)
         top = sheet.figure.add_subplot(grid[0])
         _storeys(top, study)

@@ -22,7 +22,7 @@ TALLEST = 9.0  # panels that are taller together stand beside each other, in
 BESIDE, LINE = 0.12, 0.13  # between them; height of a line of their titles, in
 RIGHT = 0.985  # their right end, in shares of the width
 DECADES = 2.0  # either side of the limit that the colours span
-TITLE_WIDTH, INDENT = 132, 3  # look: characters; of a panel's letter before its title
+INDENT = 3  # look: characters of a panel's letter before its title
 FEW = 4  # columns, in whose cells there is room for numbers
 NOT_ASKED = "0.9"
 LINES = [
@@ -52,8 +52,8 @@ def _plot(study: str, rows: Sequence[Row], where: Path) -> tuple[Path, Path]:
     between = 0.22 + LINE * max(map(len, titles))
     below = 0.3 if few else 0.2 + LETTER * max(map(len, columns))
     every = 1 if few else math.ceil(UPRIGHT * len(columns) / wide)  # as many columns have names as have room
-    height, room = down * tall + (down - 1) * between, {"above": between - 0.05, "below": below}
-    with style.sheet(where, study, title, LINES, height, width=TITLE_WIDTH, **room) as sheet:
+    height, above = down * tall + (down - 1) * between, between - 0.05
+    with style.sheet(where, study, title, LINES, height, above=above, below=below) as sheet:
         gaps = {"wspace": BESIDE / wide, "hspace": between / tall}
         panels = sheet.panels(down, across, left / style.PAGE, RIGHT, **gaps)
         for place, (axes, name) in enumerate(zip(panels, chart.measures, strict=False)):

@@ -41,9 +41,7 @@ def plot_scenes(found: Sequence[SceneAnswer], where: Path) -> tuple[Path, Path]:
     """Write ``scenes.svg`` and ``scenes.png`` into the folder ``where``; their paths."""
     held = [one for one in found if one.differences]
     lines = ["Difference from the exact answer over the sum of both error bars; left of the line both can be true."]
-    with style.sheet(
-        where, "scenes", "Error over its bar", lines, ROW * max(len(held), 3), width=120, above=0.08
-    ) as sheet:
+    with style.sheet(where, "scenes", "Error over its bar", lines, ROW * max(len(held), 3), above=0.08) as sheet:
         axes = sheet.panels(1, 1, LABELS, 1.0 - LEGEND / style.PAGE)[0]
         axes.axvspan(LEAST, 1.0, color=style.GREEN, alpha=0.07, linewidth=0.0)
         axes.axvline(1.0, color=style.BLACK, linewidth=0.9)
@@ -71,7 +69,7 @@ def plot_correspondence(
         "The correspondence principle, cut at zero force, against Ting's exact law. Dots: finite elements agree with "
         "the exact law within both bars; crosses: they do not."
     ]
-    with style.sheet(where, "correspondence", "The paper's law in the rebound", lines, MAP, width=125) as sheet:
+    with style.sheet(where, "correspondence", "The paper's law in the rebound", lines, MAP) as sheet:
         for place, axes in enumerate(sheet.panels(1, 2, 0.075, 0.985, wspace=0.2)):
             name = list(SHOWN)[place]
             factor, title = SHOWN[name]
