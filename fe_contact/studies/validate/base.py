@@ -75,6 +75,11 @@ class Column:
     error: str = ""
 
 
+def columns(*keys: str) -> tuple[Column, ...]:
+    """Columns without a bar, labelled as their keys say."""
+    return tuple(Column(key, key.replace("_", " ")) for key in keys)
+
+
 @dataclass(frozen=True)
 class Listing:
     """A table of the page: columns of a CSV file, and of its rows those whose column ``only[0]`` holds ``only[1]``."""

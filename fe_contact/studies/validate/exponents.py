@@ -10,7 +10,7 @@ from fe_contact.studies.exponents.impacts import to_dict as of_impacts
 from fe_contact.studies.exponents.layers import Check, named
 from fe_contact.studies.exponents.study import Exponents, study
 from fe_contact.studies.validate import base
-from fe_contact.studies.validate.base import Column
+from fe_contact.studies.validate.base import Column, columns
 
 ROUNDING = 1e-9  # rounding: of an exponent, and of D over the row's
 FIGURES = (
@@ -23,9 +23,7 @@ LISTING = base.Listing(
     "exponents.csv",
     "By finite elements",
     (
-        Column("shape", "shape"),
-        Column("profile_exponent", "profile exponent"),
-        Column("base", "base"),
+        *columns("shape", "profile_exponent", "base"),
         Column("nu", "ν"),
         Column("a_over_h", "a/h"),
         Column("exponent", "exponent", "exponent_error"),

@@ -14,7 +14,7 @@ from fe_contact.studies import journal
 from fe_contact.studies.files import Line, write_study
 from fe_contact.studies.larger_models import MeasuredEffect, measure
 from fe_contact.studies.validate import base
-from fe_contact.studies.validate.base import Column
+from fe_contact.studies.validate.base import Column, columns
 from lumped.scene.scene import Scene
 from lumped.scene.tables import load
 
@@ -104,8 +104,7 @@ LISTING = base.Listing(
     "larger.csv",
     "Effects above the tolerance, estimated and measured, over the peak force",
     (
-        Column("scene", "scene"),
-        Column("effect", "effect"),
+        *columns("scene", "effect"),
         Column("key", "selected by"),
         Column("estimate", "estimated"),
         Column("change", "measured", "change_error"),

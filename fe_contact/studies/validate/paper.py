@@ -7,7 +7,7 @@ from functools import partial
 
 from fe_contact.studies.paper import told, write_paper
 from fe_contact.studies.validate import base
-from fe_contact.studies.validate.base import Column
+from fe_contact.studies.validate.base import Column, columns
 from lumped.paper import Examples
 from lumped.paper.claims import JudgedClaim, counts, study
 from lumped.paper.rules import AGREES, DIFFERS, UNDECIDED, UNKNOWN
@@ -27,35 +27,18 @@ LISTINGS = (
         "Every number that the paper claims",
         (
             Column("id", "claim"),
-            Column("place", "place"),
-            Column("quantity", "quantity"),
-            Column("unit", "unit"),
-            Column("printed", "printed"),
-            Column("recomputed", "recomputed"),
-            Column("deviation", "deviation"),
-            Column("verdict", "verdict"),
+            *columns("place", "quantity", "unit", "printed", "recomputed", "deviation", "verdict"),
         ),
     ),
     base.Listing(
         "assumptions.csv",
         "Assumptions behind the examples",
-        (
-            Column("example", "example"),
-            Column("assumption", "assumption"),
-            Column("criterion", "criterion"),
-            Column("recomputed", "recomputed"),
-            Column("verdict", "verdict"),
-        ),
+        columns("example", "assumption", "criterion", "recomputed", "verdict"),
     ),
     base.Listing(
         "misprints.csv",
         "Misprints and contradictions",
-        (
-            Column("place", "place"),
-            Column("printed", "printed"),
-            Column("correct", "correct"),
-            Column("proof", "proof"),
-        ),
+        columns("place", "printed", "correct", "proof"),
     ),
 )
 

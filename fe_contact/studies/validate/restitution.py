@@ -8,7 +8,7 @@ from pathlib import Path
 
 from fe_contact.studies.restitution import RestitutionLine, table, write_restitution
 from fe_contact.studies.validate import base
-from fe_contact.studies.validate.base import Column
+from fe_contact.studies.validate.base import Column, columns
 from lumped.restitution import EXACT
 from lumped.schema.csv_file import write_csv
 
@@ -20,8 +20,7 @@ LISTING = base.Listing(
     "formulas.csv",
     "Every damping formula at its worst",
     (
-        Column("law", "law"),
-        Column("damping", "damping"),
+        *columns("law", "damping"),
         Column("exit", "contact ends at zero"),
         Column("difference", "obtained less asked, at worst"),
         Column("at", "at e ="),

@@ -14,7 +14,7 @@ from fe_contact.studies import journal
 from fe_contact.studies.files import Line, write_study
 from fe_contact.studies.validate import base
 from fe_contact.studies.validate._scenes import SceneAnswer, answered, chosen, largest
-from fe_contact.studies.validate.base import Column
+from fe_contact.studies.validate.base import Column, columns
 from lumped.numbers import Array
 from lumped.result.result import Quantity
 from lumped.schema.csv_file import write_columns
@@ -112,15 +112,13 @@ SCENES_TABLE = base.Listing(
     "scenes.csv",
     "Every scene, its answer and its bars",
     (
-        Column("scene", "scene"),
-        Column("method", "method"),
+        *columns("scene", "method"),
         Column("peak_force_N", "peak force, N", "peak_force_error_N"),
         Column("peak_depth_m", "peak depth, m", "peak_depth_error_m"),
         Column("duration_s", "duration, s", "duration_error_s"),
         Column("restitution", "restitution", "restitution_error"),
         Column("exact", "exact answer"),
-        Column("error_over_bar", "error over bar"),
-        Column("tolerance_reached", "tolerance reached"),
+        *columns("error_over_bar", "tolerance_reached"),
         Column("larger_model", "needs a larger model for"),
         Column("share_of_peak", "share of the peak"),
         Column("key", "selected by"),

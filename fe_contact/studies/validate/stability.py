@@ -8,16 +8,13 @@ from functools import partial
 from fe_contact.studies.stability.bars import DEFAULT, KEYS
 from fe_contact.studies.stability.base import Row, rows_of, studies, told, write_stability
 from fe_contact.studies.validate import base
-from fe_contact.studies.validate.base import Column
+from fe_contact.studies.validate.base import Column, columns
 
 LISTING = base.Listing(
     "table.csv",
     "A bouncing bar over ten periods",
     (
-        Column("scheme", "scheme"),
-        Column("mass", "mass"),
-        Column("tip", "tip"),
-        Column("enforcement", "enforcement"),
+        *columns("scheme", "mass", "tip", "enforcement"),
         Column("cfl", "CFL"),
         Column("drift", "energy drift"),
         Column("ripple", "ripple"),

@@ -7,7 +7,7 @@ from functools import partial
 from fe_contact.studies.table1.study import Trial, table1
 from fe_contact.studies.table1.verdict import HOLDS, RANGE, UNDECIDED, UNTRIED, WRONG, undecided, verdict, write_table1
 from fe_contact.studies.validate import base
-from fe_contact.studies.validate.base import Column
+from fe_contact.studies.validate.base import Column, columns
 
 TABLES = ("table1.csv", "table1-datum.csv", "table1-bonded.csv")
 SPOKEN = {
@@ -19,8 +19,7 @@ SPOKEN = {
 }
 COLUMNS = (
     Column("number", "row"),
-    Column("case", "case"),
-    Column("verdict", "verdict"),
+    *columns("case", "verdict"),
     Column("statement", "why"),
     Column("D_printed", "D printed"),
     Column("D", "D found", "D_error"),
