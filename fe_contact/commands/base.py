@@ -9,7 +9,7 @@ import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
 from operator import methodcaller
@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from fe_contact.progress import Progress, clear, log_to, terminal, to_all
 from fe_contact.settings import Given, faults
-from lumped.errors import BadInput, Fault, shown
+from lumped.errors import BadInput, Fault, NotReached, shown
 from lumped.indentation import Indentation
 from lumped.result.folder import RECORD
 from lumped.result.folder import publish as publish_files
@@ -281,6 +281,16 @@ class StudyRun:
         if missed:
             complain(missed)
         return NOT_REACHED if missed else DONE
+
+
+@contextmanager
+def recorded(write: Callable[[str], object]) -> Iterator[None]:
+    """What comes to no end within is written, in the words of its failure, before it is told."""
+    try:
+        yield
+    except NotReached as failure:
+        write(str(failure))
+        raise
 
 
 def finite_exponents(args: argparse.Namespace, study: str, rows: Callable[[], Sequence[StrainedRow]]) -> int:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
-from lumped.errors import BadInput, Fault, NotReached, addressed, shown
+from lumped.errors import BadInput, Fault, addressed, shown
 from lumped.schema import Table
 
 if TYPE_CHECKING:
@@ -75,14 +75,8 @@ def _fit(asked: FitQuestion) -> int:
 
     args, where = asked.run.args, asked.run.where
     bounds = dict(_bounds(args.bounds))
-    try:
-        with asked.addressed():
-            found = fit(
-                asked.curve, args.law, asked.scene, asked.free, asked.fixed, bounds, args.peak, asked.run.progress
-            )
-    except NotReached as failure:
-        write_failure(where, args.law, str(failure))
-        raise
+    with base.recorded(partial(write_failure, where, args.law)), asked.addressed():
+        found = fit(asked.curve, args.law, asked.scene, asked.free, asked.fixed, bounds, args.peak, asked.run.progress)
     published = base.publish(where, found.write_files, partial(plot_fit, asked.curve, found), record=RECORD)
     _report(args, asked.scene, found, *published)
     return base.DONE if found.result.converged else base.NOT_REACHED

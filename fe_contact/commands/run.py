@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import argparse
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
-from lumped.errors import BadInput, Fault, NotReached
+from lumped.errors import BadInput, Fault
 from lumped.result.result import Result, write_failure
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
@@ -30,11 +31,8 @@ def execute(args: argparse.Namespace) -> int:
     where = base.folder(args, "run", scene.name)
     scene, taken = _modelled(args, scene, table)
     _check(args, scene)
-    try:
+    with base.recorded(partial(write_failure, where, scene, args.method)):
         return _impact(args, scene, table, where, taken)
-    except NotReached as failure:
-        write_failure(where, scene, args.method, str(failure))
-        raise
 
 
 def _modelled(args: argparse.Namespace, scene: Scene, table: Table) -> tuple[Scene, list[str]]:
