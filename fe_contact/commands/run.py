@@ -47,7 +47,7 @@ def _modelled(args: argparse.Namespace, scene: Scene, table: Table) -> tuple[Sce
 
 
 def _impact(args: argparse.Namespace, scene: Scene, table: Table, where: Path, taken: list[str]) -> int:
-    from fe_contact.methods import settings, simulate
+    from fe_contact.methods import lines_of, settings, simulate
 
     if args.method == "fe":
         from fe_contact.reference import answered
@@ -59,7 +59,8 @@ def _impact(args: argparse.Namespace, scene: Scene, table: Table, where: Path, t
             _check_taken(args.method, scene.model, result.model)
     content, told = base.publish(where, lambda folder: _write(args, solved, result, folder))
     title, *lines = result.summary().split("\n  ")
-    return base.report(args, result, content, [*taken, *_weighed(result), *lines, told], title, scene.model)
+    weighed = (f"weighed: {line}" for line in lines_of(result.weighed))
+    return base.report(args, result, content, [*taken, *weighed, *lines, told], title, scene.model)
 
 
 def _check_taken(method: str, asked: Model, answered: Model) -> None:
@@ -68,13 +69,6 @@ def _check_taken(method: str, asked: Model, answered: Model) -> None:
     if names:
         reason = f"sufficient: that takes {', '.join(names)}, which {method} leaves out; accepted: --method fe"
         raise BadInput(Fault("--model", "", reason))
-
-
-def _weighed(result: Result) -> list[str]:
-    """The methods that were weighed, where the cheapest was asked for."""
-    from fe_contact.methods import lines_of
-
-    return [f"weighed: {line}" for line in lines_of(result.weighed)]
 
 
 def _write(args: argparse.Namespace, solved: Solved | None, result: Result, folder: Path) -> None:

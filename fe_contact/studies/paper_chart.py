@@ -123,8 +123,9 @@ def _grid(study: PaperStudy, number: int, where: Path) -> tuple[Path, Path]:
     figure.subplots_adjust(0.07, 0.125, 0.985, 0.845, hspace=0.26, wspace=0.16)
     held, varied = ("R2", "R1") if number == 7 else ("R1", "R2")
     for i, axes in enumerate(panels):
-        _panel(axes, [row for row in rows if row.panel == i], varied)
-        style.label(axes, "abcd"[i], f"{held} = {_named(rows, i, held)}")
+        own = [row for row in rows if row.panel == i]
+        _panel(axes, own, varied)
+        style.label(axes, "abcd"[i], f"{held} = {_value(own[0], held)}")
     panels[0].set_xlim(0.0, 1.03 * MICRO * max(row.exact.history.time[-1] for row in rows))
     for axes in panels[2:]:
         axes.set_xlabel("time, µs")
@@ -148,10 +149,6 @@ def _panel(axes: Axes, rows: Sequence[GridRow], varied: str) -> None:
 def _plot(axes: Axes, result: Result, **look: Any) -> None:
     history = result.history.resampled(np.linspace(0.0, result.history.time[-1], POINTS))
     axes.plot(MICRO * history.time, history.force, **look)
-
-
-def _named(rows: Sequence[GridRow], panel: int, held: str) -> str:
-    return _value(next(row for row in rows if row.panel == panel), held)
 
 
 def _value(row: GridRow, name: str) -> str:

@@ -271,12 +271,13 @@ def _known(quantity: Quantity) -> tuple[float, float]:
     return quantity.value, quantity.error
 
 
-def write_rings(curves: Sequence[RingCurve], where: Path, impacts: Sequence[RingStruck] = ()) -> Table:
+def write_rings(curves: Sequence[RingCurve], where: Path, impacts: Sequence[RingStruck]) -> Table:
     """Write ``ring.csv``, ``ring_impacts.csv`` and ``ring.json`` into a folder; the content of the last."""
-    tables = {"ring": [line for curve in curves for line in _depths(curve)]}
-    tables |= {"ring_impacts": [_impact(one) for one in impacts]} if impacts else {}
-    described = [_described(curve) for curve in curves]
-    content = {"schema": SCHEMA, "rings": described, "impacts": tables.get("ring_impacts", [])}
+    tables = {
+        "ring": [line for curve in curves for line in _depths(curve)],
+        "ring_impacts": [_impact(one) for one in impacts],
+    }
+    content = {"schema": SCHEMA, "rings": [_described(one) for one in curves], "impacts": tables["ring_impacts"]}
     return write_study(where, "ring", content, tables)
 
 

@@ -32,12 +32,12 @@ STRUCK_LINES = [
 ]
 
 
-def plot_rings(curves: Sequence[RingCurve], where: Path, impacts: Sequence[RingStruck] = ()) -> tuple[Path, ...]:
-    """Write ``ring.svg`` and ``ring.png`` into the folder ``where``, of impacts ``fig12`` too; their paths.
+def plot_rings(curves: Sequence[RingCurve], where: Path, impacts: Sequence[RingStruck]) -> tuple[Path, ...]:
+    """Write ``ring`` and, of impacts, ``fig12``, as SVG and PNG, into the folder ``where``; their paths.
 
     ``fig12.csv`` holds the curves that it draws. Raises NotReached.
     """
-    return (*_pressed(curves, where), *(_fig12(impacts, where) if impacts else ()))
+    return (*_pressed(curves, where), *_fig12(impacts, where))
 
 
 def _fig12(impacts: Sequence[RingStruck], where: Path) -> tuple[Path, Path]:

@@ -16,7 +16,7 @@ from matplotlib.axes import Axes
 from fe_contact.methods import FE
 from fe_contact.studies import style
 from fe_contact.studies.exponents.impacts import EXACT, ON_LAYER, READERS, ImpactExponents
-from fe_contact.studies.exponents.layers import Check, ExponentCurve, Profile
+from fe_contact.studies.exponents.layers import Check, ExponentCurve
 from fe_contact.studies.exponents.study import Exponents
 from fe_contact.studies.style import Look
 
@@ -162,12 +162,9 @@ def _columns(found: Sequence[ImpactExponents]) -> Mapping[str, list[ImpactExpone
     """Impacts by what stands above their column: shapes on the half-space, then on layers."""
     columns: dict[str, list[ImpactExponents]] = {}
     for one in sorted(found, key=lambda one: one.impact.wide is not None):
-        columns.setdefault(_column(one.impact.profile, one.impact.wide is not None), []).append(one)
+        body = f"exponent {one.impact.profile.row:g}" if one.impact.wide is None else "layer"
+        columns.setdefault(f"{one.impact.profile.label}, {body}", []).append(one)
     return columns
-
-
-def _column(profile: Profile, on_layer: bool) -> str:
-    return f"{profile.label}, {'layer' if on_layer else f'exponent {profile.row:g}'}"
 
 
 def _biases(axes: Axes, found: Sequence[ImpactExponents], reader: str) -> None:

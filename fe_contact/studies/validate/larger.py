@@ -29,19 +29,15 @@ Effects = Mapping[str, tuple[MeasuredEffect, ...]]  # by their scenes
 def make(asked: base.Request) -> base.Made:
     """Every effect above the tolerance of some scenes, by the next larger model; rows are kept scene by scene."""
     calls = {name: partial(effects_of, name) for name in (FEW if asked.quick else SCENES)}
-    return of_effects(journal.rows(asked.where / KEPT, calls, asked.progress, asked.jobs))
+    found = journal.rows(asked.where / KEPT, calls, asked.progress, asked.jobs)
+    section = base.Section((headline(found),), tuple(sentences(found)), (), (LISTING,))
+    return base.Made(section, (partial(write, found),))
 
 
 def effects_of(name: str) -> tuple[MeasuredEffect, ...]:
     """The effects of a packaged scene at its default tolerance. Raises BadInput, NotReached."""
     scene, table = load(Scene, name)
     return measure(scene, settings(table, None, scene.source))
-
-
-def of_effects(found: Effects) -> base.Made:
-    """The section of such effects."""
-    section = base.Section((headline(found),), tuple(sentences(found)), (), (LISTING,))
-    return base.Made(section, (partial(write, found),))
 
 
 def ratio(effect: MeasuredEffect) -> float | None:
