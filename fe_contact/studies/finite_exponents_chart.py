@@ -23,8 +23,8 @@ LINES = [
 ]
 
 
-def plot_finite(study: str, found: Sequence[Departures], where: Path) -> tuple[Path, Path]:
-    """Write ``<study>_finite.svg`` and ``.png`` into the folder ``where``; their paths."""
+def plot_finite(study: str, found: Sequence[Departures], where: Path) -> None:
+    """Write ``<study>_finite.svg`` and ``.png`` into the folder ``where``."""
     shown = [one for one in found if one.small is not None]
     title, below = "Exponents at large strains", 0.5 + LINE * -(-len(shown) // COLUMNS)
     with style.sheet(where, f"{study}_finite", title, LINES, PANEL, below=below) as sheet:
@@ -39,7 +39,6 @@ def plot_finite(study: str, found: Sequence[Departures], where: Path) -> tuple[P
             style.label(axes, letter, title)
         handles, labels = left.get_legend_handles_labels()
         sheet.figure.legend(handles, labels, loc="lower left", bbox_to_anchor=(0.06, 0.0), ncols=COLUMNS)
-    return sheet.paths
 
 
 def _row(left: Axes, right: Axes, one: Departures, colour: str) -> None:

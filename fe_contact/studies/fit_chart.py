@@ -29,8 +29,8 @@ SCALES = (100, 50, 20, 10, 5, 2, 1, 0.5)  # look: what is left is drawn so many 
 ROOM = 0.5  # of the peak, for what is left, to either side
 
 
-def plot_fit(curve: Curve, found: Fit, where: Path) -> tuple[Path, Path]:
-    """Write ``fit.svg`` and ``fit.png`` into the folder ``where``; their paths."""
+def plot_fit(curve: Curve, found: Fit, where: Path) -> None:
+    """Write ``fit.svg`` and ``fit.png`` into the folder ``where``."""
     lines = [f"{name} = {_shown(estimate)}" for name, estimate in found.parameters.items()]
     held = ", peak held" if found.peak_held else ""
     lines.append(f"normalized error {found.error_in_words}{held}; intervals of {100.0 * LEVEL:g} %")
@@ -40,7 +40,6 @@ def plot_fit(curve: Curve, found: Fit, where: Path) -> tuple[Path, Path]:
         sheet.figure.subplots_adjust(0.15, sheet.bottom, 0.965, sheet.top, hspace=0.38)
         _force(force, curve, found)
         _left(left, curve, found)
-    return sheet.paths
 
 
 def _shown(estimate: Estimate) -> str:
@@ -82,8 +81,8 @@ def _left(axes: Axes, curve: Curve, found: Fit) -> None:
     style.label(axes, "b", "what is left, over the peak")
 
 
-def plot_ranking(ranked: Sequence[RankedFit], curve: Curve, where: Path) -> tuple[Path, Path]:
-    """Write ``fits.svg`` and ``fits.png`` into the folder ``where``; their paths."""
+def plot_ranking(ranked: Sequence[RankedFit], curve: Curve, where: Path) -> None:
+    """Write ``fits.svg`` and ``fits.png`` into the folder ``where``."""
     shown = [one for one in ranked if one.fit is not None]
     rows = -(-len(shown) // COLUMNS)
     left_out = ", ".join(one.law for one in ranked if one.fit is None)
@@ -104,7 +103,6 @@ def plot_ranking(ranked: Sequence[RankedFit], curve: Curve, where: Path) -> tupl
                 axes.set_xlabel(f"time, {second}")
             if i % COLUMNS == 0:
                 axes.set_ylabel(f"force, {newton}")
-    return sheet.paths
 
 
 def _panel(axes: Axes, one: RankedFit, curve: Curve) -> None:

@@ -20,8 +20,8 @@ PREDICTED = {**ABOVE, "color": style.SKY, "alpha": 0.5}
 LAW = {**ABOVE, "color": style.VERMILION, "alpha": 0.6}
 
 
-def plot_identified(found: Identified, where: Path) -> tuple[Path, Path]:
-    """Write ``identified.svg`` and ``identified.png`` into the folder ``where``; their paths."""
+def plot_identified(found: Identified, where: Path) -> None:
+    """Write ``identified.svg`` and ``identified.png`` into the folder ``where``."""
     curves = found.curves[:MOST]
     columns = min(COLUMNS, len(curves))
     rows = -(-len(curves) // columns)
@@ -41,7 +41,6 @@ def plot_identified(found: Identified, where: Path) -> tuple[Path, Path]:
             rest = sheet.figure.add_subplot(inner[1], sharex=force)
             _force(force, curve, law, "abcdef"[i])
             _left(rest, curve)
-    return sheet.paths
 
 
 def _verdict(found: Identified) -> str:

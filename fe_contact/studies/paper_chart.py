@@ -52,25 +52,26 @@ MEMORY_KEY = (
 )
 
 
-def plot_paper(study: PaperStudy, where: Path) -> tuple[Path, ...]:
-    """Write ``fig6`` to ``fig10`` and ``fig15`` as SVG and PNG into ``where``; their paths. Raises NotReached.
+def plot_paper(study: PaperStudy, where: Path) -> None:
+    """Write ``fig6`` to ``fig10`` and ``fig15`` as SVG and PNG into ``where``. Raises NotReached.
 
     A CSV of each holds the curves that it draws.
     """
     with style.look():
-        steel = (*_fig6(study, where), *_grid(study, 7, where), *_grid(study, 8, where))
-        concrete = (*_fig9(study.examples, where), *_fig10(study.examples, where))
-        return (*steel, *concrete, *_fig15(study.examples, where))
+        _fig6(study, where)
+        _grid(study, 7, where)
+        _grid(study, 8, where)
+        for draw in (_fig9, _fig10, _fig15):
+            draw(study.examples, where)
 
 
-def _saved(figure: Figure, where: Path, name: str) -> tuple[Path, Path]:
+def _saved(figure: Figure, where: Path, name: str) -> None:
     """The chart, and beside it what it draws."""
-    paths = style.save(figure, where, name)
+    style.save(figure, where, name)
     style.write_curves(figure, where, name)
-    return paths
 
 
-def _fig6(study: PaperStudy, where: Path) -> tuple[Path, Path]:
+def _fig6(study: PaperStudy, where: Path) -> None:
     steel = study.examples.steel
     figure = Figure(figsize=(style.PAGE, HEIGHT_6))
     axes = figure.add_axes((0.075, 0.13, 0.6, 0.68))
@@ -86,7 +87,7 @@ def _fig6(study: PaperStudy, where: Path) -> tuple[Path, Path]:
         "paper does not print."
     ]
     style.heading(figure, "Fig. 6 drawn again: the steel ball", lines)
-    return _saved(figure, where, "fig6")
+    _saved(figure, where, "fig6")
 
 
 def _curves_6(steel: Steel) -> list[tuple[str, Result, Look]]:
@@ -116,7 +117,7 @@ def _damped(axes: Axes, steel: Steel, law: str, time: float, force: float) -> No
         axes.text(time * place, force * level, f"{e:g}", color=colour, **ON_CURVE)
 
 
-def _grid(study: PaperStudy, number: int, where: Path) -> tuple[Path, Path]:
+def _grid(study: PaperStudy, number: int, where: Path) -> None:
     rows = [row for row in study.grid if row.figure == number]
     figure = Figure(figsize=(style.PAGE, HEIGHT_GRID))
     panels = figure.subplots(2, 2, sharex=True, sharey=number == 8).ravel()
@@ -134,7 +135,7 @@ def _grid(study: PaperStudy, number: int, where: Path) -> tuple[Path, Path]:
     figure.legend(handles=LAW_KEY, loc="lower center", ncols=2)
     lines = ["The law of the paper, and what it approximates in the rebound; until the deepest instant they are one."]
     style.heading(figure, f"Fig. {number} drawn again: the steel ball, {varied} varied", lines)
-    return _saved(figure, where, f"fig{number}")
+    _saved(figure, where, f"fig{number}")
 
 
 def _panel(axes: Axes, rows: Sequence[GridRow], varied: str) -> None:
@@ -155,7 +156,7 @@ def _value(row: GridRow, name: str) -> str:
     return f"{row.R1:g}" if name == "R1" else style.readable(row.R2, "s", 3)
 
 
-def _fig9(examples: Examples, where: Path) -> tuple[Path, Path]:
+def _fig9(examples: Examples, where: Path) -> None:
     """Over peak and contact time of the proposed model the assumed radius drops out."""
     concrete, steel = examples.concrete, examples.steel
     velocity = min(concrete.velocities)
@@ -172,7 +173,7 @@ def _fig9(examples: Examples, where: Path) -> tuple[Path, Path]:
         "not print, nor does its text hold the measured curve."
     ]
     style.heading(figure, f"Fig. 9 drawn again: concrete at {velocity:g} m/s", lines)
-    return _saved(figure, where, "fig9")
+    _saved(figure, where, "fig9")
 
 
 def _over(steel: Steel, whole: History, momentum: float, share: float) -> tuple[float, float]:
@@ -187,7 +188,7 @@ def _shares(axes: Axes) -> None:
     axes.set(xlabel="time / contact time", ylabel="force / peak", xlim=(0.0, None), ylim=(0.0, 1.05))
 
 
-def _fig10(examples: Examples, where: Path) -> tuple[Path, Path]:
+def _fig10(examples: Examples, where: Path) -> None:
     """Forces and times over those of the uncut impact at the higher velocity: the assumed radius drops out."""
     concrete = examples.concrete
     radius, fast = min(concrete.radii), max(concrete.velocities)
@@ -211,10 +212,10 @@ def _fig10(examples: Examples, where: Path) -> tuple[Path, Path]:
         f"{100 * concrete.jankowski_peak_error:g} %. Cut, the striker leaves as fast as uncut."
     ]
     style.heading(figure, f"Fig. 10 drawn again: concrete at {fast:g} m/s", lines)
-    return _saved(figure, where, "fig10")
+    _saved(figure, where, "fig10")
 
 
-def _fig15(examples: Examples, where: Path) -> tuple[Path, Path]:
+def _fig15(examples: Examples, where: Path) -> None:
     """Raises TooManySteps and NotReached."""
     dents = _dented(examples)
     figure = Figure(figsize=(style.PAGE, HEIGHT_15))
@@ -235,7 +236,7 @@ def _fig15(examples: Examples, where: Path) -> tuple[Path, Path]:
         "finite elements the depth of its tip falls so, from less."
     ]
     style.heading(figure, "Fig. 15 as numbers: memory between contacts", lines)
-    return _saved(figure, where, "fig15")
+    _saved(figure, where, "fig15")
 
 
 def _dented(examples: Examples) -> list[DentedSurface]:

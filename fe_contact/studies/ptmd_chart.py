@@ -22,8 +22,8 @@ LINES: dict[str, Look] = {
 }
 
 
-def plot_study(study: PtmdStudy, where: Path) -> tuple[Path, Path]:
-    """Write ``ptmd.svg`` and ``ptmd.png`` into the folder ``where``; their paths."""
+def plot_study(study: PtmdStudy, where: Path) -> None:
+    """Write ``ptmd.svg`` and ``ptmd.png`` into the folder ``where``."""
     drawings = [_acceleration, _displacement]
     if study.case.system.damper is not None:
         drawings.append(_stroke)
@@ -38,7 +38,6 @@ def plot_study(study: PtmdStudy, where: Path) -> tuple[Path, Path]:
         for draw, axes, letter in zip(drawings, panels, "abcd", strict=False):
             draw(axes, study, letter)
         panels[-1].set(xlabel="time, s", xlim=(0.0, study.main.motion.time[-1]))
-    return sheet.paths
 
 
 def _lines(study: PtmdStudy) -> list[str]:

@@ -19,8 +19,8 @@ LINES = {"force": "-", "depth": (0, (3, 1.6))}  # look: by exit
 COLOURS = (*style.CYCLE, style.GREY)
 
 
-def plot_restitution(lines: Sequence[RestitutionLine], where: Path) -> tuple[Path, Path]:
-    """Write ``restitution.svg`` and ``restitution.png`` into the folder ``where``; their paths."""
+def plot_restitution(lines: Sequence[RestitutionLine], where: Path) -> None:
+    """Write ``restitution.svg`` and ``restitution.png`` into the folder ``where``."""
     names = list(dict.fromkeys(line.law for line in lines))
     rows = -(-len(names) // COLUMNS)
     text = [
@@ -35,7 +35,6 @@ def plot_restitution(lines: Sequence[RestitutionLine], where: Path) -> tuple[Pat
             _panel(axes, [line for line in lines if line.law == name])
             style.label(axes, chr(ord("a") + i), name)
             axes.set(xlabel="asked" if i + COLUMNS >= len(names) else "", ylabel="" if i % COLUMNS else "obtained")
-    return sheet.paths
 
 
 def _panel(axes: Axes, lines: Sequence[RestitutionLine]) -> None:

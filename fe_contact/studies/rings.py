@@ -273,7 +273,7 @@ def _known(quantity: Quantity) -> tuple[float, float]:
 
 def write_rings(curves: Sequence[RingCurve], where: Path, impacts: Sequence[RingStruck]) -> Table:
     """Write ``ring.csv``, ``ring_impacts.csv`` and ``ring.json`` into a folder; the content of the last."""
-    tables = {
+    tables: dict[str, list[Line]] = {
         "ring": [line for curve in curves for line in _depths(curve)],
         "ring_impacts": [_impact(one) for one in impacts],
     }

@@ -86,13 +86,11 @@ def look() -> Iterator[None]:
         yield
 
 
-def save(figure: Figure, where: Path, name: str) -> tuple[Path, Path]:
+def save(figure: Figure, where: Path, name: str) -> None:
     """Write ``name.svg`` and ``name.png`` into a folder, made when it is not there; the same bytes every time."""
     where.mkdir(parents=True, exist_ok=True)
-    paths = where / f"{name}.svg", where / f"{name}.png"
-    figure.savefig(paths[0], metadata={"Date": None})
-    figure.savefig(paths[1], metadata={"Software": None})
-    return paths
+    figure.savefig(where / f"{name}.svg", metadata={"Date": None})
+    figure.savefig(where / f"{name}.png", metadata={"Software": None})
 
 
 def write_curves(figure: Figure, where: Path, name: str) -> None:

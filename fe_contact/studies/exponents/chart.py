@@ -54,8 +54,8 @@ def plot_exponents(found: Exponents, where: Path) -> None:
     plot_impacts(found.impacts, where)
 
 
-def plot_layers(curves: Sequence[ExponentCurve], checks: Sequence[Check], where: Path) -> tuple[Path, Path]:
-    """Write ``exponents.svg`` and ``exponents.png`` into the folder ``where``; their paths."""
+def plot_layers(curves: Sequence[ExponentCurve], checks: Sequence[Check], where: Path) -> None:
+    """Write ``exponents.svg`` and ``exponents.png`` into the folder ``where``."""
     rows = len(ROWS) + 1
     title = "Exponents between half-space and thin layer"
     with style.sheet(where, "exponents", title, LAYER_LINES, rows * PANEL) as sheet:
@@ -75,7 +75,6 @@ def plot_layers(curves: Sequence[ExponentCurve], checks: Sequence[Check], where:
         style.label(right, next(letters), "punch: D over the row's")
         for axes in (left, right):
             axes.set(xlabel="contact radius over thickness")
-    return sheet.paths
 
 
 def _exponents(axes: Axes, curves: Sequence[ExponentCurve], checks: Sequence[Check]) -> None:
@@ -140,8 +139,8 @@ def _of_punch(found: Sequence[Any]) -> list[object]:
     return [one for one in found if np.isinf(one.profile.n)]
 
 
-def plot_impacts(found: Sequence[ImpactExponents], where: Path) -> tuple[Path, Path]:
-    """Write ``exponents_from_impacts.svg`` and ``.png`` into the folder ``where``; their paths."""
+def plot_impacts(found: Sequence[ImpactExponents], where: Path) -> None:
+    """Write ``exponents_from_impacts.svg`` and ``.png`` into the folder ``where``."""
     columns = _columns(found)
     title = "Exponents read from impacts on a viscoelastic body"
     height = len(READERS) * BIAS_PANEL
@@ -155,7 +154,6 @@ def plot_impacts(found: Sequence[ImpactExponents], where: Path) -> tuple[Path, P
             axes.set(xlabel="tau/T" if place >= len(panels) - len(columns) else "")
         for axes in panels[: len(columns)]:
             axes.legend(loc="lower right", fontsize=5.6, labelspacing=0.2, handlelength=1.4)
-    return sheet.paths
 
 
 def _columns(found: Sequence[ImpactExponents]) -> Mapping[str, list[ImpactExponents]]:

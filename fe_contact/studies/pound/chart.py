@@ -21,8 +21,8 @@ WITHOUT: Look = {"color": style.GREY, "linestyle": (0, (3, 1.5)), "linewidth": 0
 MARKERS = "osD^vP"
 
 
-def plot_study(study: PoundStudy, where: Path, beside: Sequence[str] = ()) -> tuple[Path, Path]:
-    """Write ``pound.svg`` and ``pound.png`` into the folder ``where``; their paths. ``beside``: what else to say."""
+def plot_study(study: PoundStudy, where: Path, beside: Sequence[str] = ()) -> None:
+    """Write ``pound.svg`` and ``pound.png`` into the folder ``where``. ``beside``: what else to say."""
     gaps = list(study.case.frames.gaps)
     rows, lines = 3 if gaps else 2, [*_lines(study), *beside]
     height = PANEL * rows + BETWEEN * (rows - 1)
@@ -37,7 +37,6 @@ def plot_study(study: PoundStudy, where: Path, beside: Sequence[str] = ()) -> tu
         places = [sheet.figure.add_subplot(below[i]) for i in range(2 * len(sides))]
         for k, axes in enumerate(places):
             _profile(axes, study, sides[k // 2], "drift" if k % 2 == 0 else "acceleration", "abcdef"[rows - 1 + k])
-    return sheet.paths
 
 
 def looks(study: PoundStudy) -> dict[str, Look]:

@@ -31,15 +31,13 @@ LINES = [
 ]
 
 
-def plot_stability(rows: Sequence[Row], where: Path) -> list[Path]:
-    """Write ``<study>.svg`` and ``.png`` of every study that has rows into the folder ``where``; their paths."""
-    found = list[Path]()
+def plot_stability(rows: Sequence[Row], where: Path) -> None:
+    """Write ``<study>.svg`` and ``.png`` of every study that has rows into the folder ``where``."""
     for study in dict.fromkeys(row["study"] for row in rows):
-        found += _plot(study, [row for row in rows if row["study"] == study], where)
-    return found
+        _plot(study, [row for row in rows if row["study"] == study], where)
 
 
-def _plot(study: str, rows: Sequence[Row], where: Path) -> tuple[Path, Path]:
+def _plot(study: str, rows: Sequence[Row], where: Path) -> None:
     """The map of one study: as many panels beside each other as would be too tall together."""
     title, chart = studies()[study].title, studies()[study].chart
     names, columns = _labels(rows, chart.rows), _labels(rows, chart.columns)
@@ -65,7 +63,6 @@ def _plot(study: str, rows: Sequence[Row], where: Path) -> tuple[Path, Path]:
             axes.set_xticks(range(len(columns)), shown, rotation=0 if few else 90, fontsize=5.6)
         for axes in panels[count:]:
             axes.set_axis_off()
-    return sheet.paths
 
 
 def _wrapped(measure: Measure, width: float) -> list[str]:

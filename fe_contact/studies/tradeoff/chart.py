@@ -74,9 +74,9 @@ def plot_tradeoff(found: Tradeoff, where: Path) -> tuple[Path, Path]:
     return sheet.paths
 
 
-def plot_work(found: Tradeoff, lines: list[str], where: Path) -> tuple[Path, Path]:
+def plot_work(found: Tradeoff, lines: list[str], where: Path) -> None:
     """Write ``work.svg`` and ``work.png`` into ``where``, finite elements over counted work alone: the same on every
-    machine; their paths.
+    machine.
     """
     signs = Signs.of(found.points)
     with style.sheet(where, "work", f"What accuracy costs: {found.scene.name}", lines, PANELS) as sheet:
@@ -85,7 +85,6 @@ def plot_work(found: Tradeoff, lines: list[str], where: Path) -> tuple[Path, Pat
         axes.set_ylabel(ERROR)
         legend = [sign for sign in signs.legend(found.points) if sign.get_label() != ALL_METHODS]
         axes.legend(handles=legend, loc="upper left", bbox_to_anchor=(1.03, 1.0), labelspacing=0.8)
-    return sheet.paths
 
 
 def _counted(axes: Axes, points: Sequence[Point], signs: Signs) -> None:

@@ -37,8 +37,8 @@ SHOWN = {
 }
 
 
-def plot_scenes(found: Sequence[SceneAnswer], where: Path) -> tuple[Path, Path]:
-    """Write ``scenes.svg`` and ``scenes.png`` into the folder ``where``; their paths."""
+def plot_scenes(found: Sequence[SceneAnswer], where: Path) -> None:
+    """Write ``scenes.svg`` and ``scenes.png`` into the folder ``where``."""
     held = [one for one in found if one.differences]
     lines = ["Difference from the exact answer over the sum of both error bars; left of the line both can be true."]
     with style.sheet(where, "scenes", "Error over its bar", lines, ROW * max(len(held), 3), above=0.08) as sheet:
@@ -54,13 +54,12 @@ def plot_scenes(found: Sequence[SceneAnswer], where: Path) -> tuple[Path, Path]:
         axes.set_yticks(range(len(held)), [f"{one.scene}  ({one.exact.replace('_', ' ')})" for one in held])
         axes.grid(axis="y", color=style.GREY, linewidth=0.3, alpha=0.4)
         axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
-    return sheet.paths
 
 
 def plot_correspondence(
     R1: Array, R2: Array, off: Mapping[str, Array], places: tuple[Array, Array, Array], where: Path
-) -> tuple[Path, Path]:
-    """Write ``correspondence.svg`` and ``.png`` into ``where``; their paths.
+) -> None:
+    """Write ``correspondence.svg`` and ``.png`` into ``where``.
 
     ``R1``, ``R2``, s, and what is ``off`` by quantity: (cases,); ``places``: R1, R2 and finite elements' error over
     both bars, (places,).
@@ -79,7 +78,6 @@ def plot_correspondence(
                           markerfacecolor=style.SKY, markeredgewidth=0.7, clip_on=False)  # fmt: skip
             axes.set(xlabel="R2, µs", ylabel="" if place else "R1")
             style.label(axes, "ab"[place], title)
-    return sheet.paths
 
 
 def _map(axes: Axes, R1: Array, R2: Array, values: Array) -> None:
