@@ -26,7 +26,7 @@ from lumped.result.folder import publish as publish_files
 from lumped.result.result import Result, worst
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
-from lumped.scene.tables import Model, load, load_indenter
+from lumped.scene.tables import Model, SceneReader
 from lumped.schema import Table
 from lumped.schema.files import SCENES, overridden, parse_assignment, parsed
 
@@ -132,17 +132,17 @@ def _from_here(key: str, value: object) -> object:
 
 def read_scene(args: argparse.Namespace) -> tuple[Scene, Table]:
     """Scene and raw settings of a command line; raises BadInput with every fault of both."""
-    return _read(args, partial(load, Scene))
+    return _read(args, lambda reader: reader.scene(Scene))
 
 
 def read_scene_for_fit(args: argparse.Namespace) -> Scene:
     """The scene of a law that is yet to be found; raises BadInput with every fault."""
-    return _read(args, partial(load, Scene, law_known=False))[0]
+    return _read(args, lambda reader: reader.scene(Scene, law_known=False))[0]
 
 
 def read_indenter(args: argparse.Namespace) -> tuple[Indenter, Table]:
     """What a slow indentation needs, and raw settings; raises BadInput with every fault of both."""
-    return _read(args, partial(load_indenter, Indenter))
+    return _read(args, lambda reader: reader.indenter(Indenter))
 
 
 def pairs(texts: Iterable[str], option: str, accepted: str) -> Iterator[tuple[str, str]]:
@@ -154,12 +154,15 @@ def pairs(texts: Iterable[str], option: str, accepted: str) -> Iterator[tuple[st
         yield key, value
 
 
-def _read(args: argparse.Namespace, reader: Callable[..., tuple[Read, Table]]) -> tuple[Read, Table]:
-    overrides = overrides_of(args)
+def _read(args: argparse.Namespace, make: Callable[[SceneReader], tuple[Read, Table]]) -> tuple[Read, Table]:
+    overrides, path = overrides_of(args), SCENES.resolved(args.scene)
+    tables = overridden(parsed(path), overrides, path.name)
     try:
-        scene, table = reader(args.scene, overrides)
+        scene, table = make(SceneReader(path.name, tables, path.parent))
     except BadInput as bad:
-        raise BadInput([*bad.faults, *_settings_faults(args.scene, overrides)]) from None
+        settings = tables.get("numerics", {})
+        refused = faults(settings, path.name) if isinstance(settings, dict) else []
+        raise BadInput([*bad.faults, *refused]) from None
     tolerance = getattr(args, "tolerance", None)
     fixed = any(text.split("=")[0].strip() == "numerics.tolerance" for text in args.overrides)
     if tolerance is not None and not fixed:
@@ -167,16 +170,6 @@ def _read(args: argparse.Namespace, reader: Callable[..., tuple[Read, Table]]) -
         if refused := faults({"tolerance": table["tolerance"]}, ""):
             raise BadInput(Fault("--tolerance", "", fault.message) for fault in refused)
     return scene, table
-
-
-def _settings_faults(scene: str, overrides: dict[str, object]) -> list[Fault]:
-    """Faults of the settings in a scene file whose physics is faulty too."""
-    try:
-        path = SCENES.resolved(scene)
-        table = overridden(parsed(path), overrides, path.name).get("numerics", {})
-    except BadInput:  # no TOML at all, which has been said
-        return []
-    return faults(table, path.name) if isinstance(table, dict) else []
 
 
 def number(text: str, option: str) -> float:
