@@ -119,11 +119,11 @@ def charts_that_can_be_read(request: pytest.FixtureRequest) -> Iterator[None]:
     """No chart that a test draws has texts over each other or beyond its page; of a plain run the first of each."""
     saved, seen, plain = style.save, set[str](), size_of(request.config) == "plain"
 
-    def looked_at(figure: Figure, where: Path, name: str) -> tuple[Path, Path]:
+    def looked_at(figure: Figure, where: Path, name: str) -> None:
         if not (plain and name in seen):
             seen.add(name)
             assert not (found := crowded(figure)), (name, found)
-        return saved(figure, where, name)
+        saved(figure, where, name)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(style, "save", looked_at)

@@ -107,7 +107,10 @@ def test_the_peak_is_held(body: Path, curve: Path, tmp_path: Path, capsys: pytes
 def test_the_chart_is_reproducible(body: Path, curve: Path, tmp_path: Path) -> None:
     measured = read_curve(curve)
     found = fit(measured, "jankowski", Scene(None, mass=0.001, velocity=1.0))
-    first, again = (plot_fit(measured, found, tmp_path / name) for name in ("first", "again"))
+    for name in ("first", "again"):
+        plot_fit(measured, found, tmp_path / name)
+    first, again = (sorted((tmp_path / name).iterdir()) for name in ("first", "again"))
+    assert len(first) == 2
     assert [path.read_bytes() for path in first] == [path.read_bytes() for path in again]
 
 

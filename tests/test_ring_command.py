@@ -75,7 +75,7 @@ def test_the_row_is_the_papers() -> None:
 
 
 def test_the_files_say_what_was_found(curves: dict[str, RingCurve], tmp_path: Path) -> None:
-    content = write_rings(tuple(curves.values()), tmp_path)
+    content = write_rings(tuple(curves.values()), tmp_path, ())
     with (tmp_path / "ring.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert content == json.loads((tmp_path / "ring.json").read_text(encoding="utf-8"))

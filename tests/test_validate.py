@@ -22,7 +22,6 @@ from fe_contact.studies.larger_models import MeasuredEffect
 from fe_contact.studies.references import Move
 from fe_contact.studies.validate import _chart, _study, larger, scenes
 from fe_contact.studies.validate._page import _cell, inlined, written
-from fe_contact.studies.validate._scenes import SceneAnswer, SceneCurve, answered, thinned
 from fe_contact.studies.validate.base import (
     DIFFERS,
     FAILED,
@@ -38,6 +37,7 @@ from fe_contact.studies.validate.base import (
     Request,
     parts,
 )
+from fe_contact.studies.validate.scenes import SceneAnswer, SceneCurve, answered, thinned
 from lumped.errors import NotReached
 from lumped.result.result import Quantity
 

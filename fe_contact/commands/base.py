@@ -8,8 +8,8 @@ import json
 import os
 import re
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
 from operator import methodcaller
@@ -19,14 +19,14 @@ from typing import TYPE_CHECKING, TypeVar
 
 from fe_contact.progress import Progress, clear, log_to, terminal, to_all
 from fe_contact.settings import Given, faults
-from lumped.errors import BadInput, Fault, shown
+from lumped.errors import BadInput, Fault, NotReached, shown
 from lumped.indentation import Indentation
 from lumped.result.folder import RECORD
 from lumped.result.folder import publish as publish_files
 from lumped.result.result import Result, worst
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
-from lumped.scene.tables import Model, load, load_indenter
+from lumped.scene.tables import Model, SceneReader
 from lumped.schema import Table
 from lumped.schema.files import SCENES, overridden, parse_assignment, parsed
 
@@ -132,25 +132,37 @@ def _from_here(key: str, value: object) -> object:
 
 def read_scene(args: argparse.Namespace) -> tuple[Scene, Table]:
     """Scene and raw settings of a command line; raises BadInput with every fault of both."""
-    return _read(args, partial(load, Scene))
+    return _read(args, lambda reader: reader.scene(Scene))
 
 
 def read_scene_for_fit(args: argparse.Namespace) -> Scene:
     """The scene of a law that is yet to be found; raises BadInput with every fault."""
-    return _read(args, partial(load, Scene, law_known=False))[0]
+    return _read(args, lambda reader: reader.scene(Scene, law_known=False))[0]
 
 
 def read_indenter(args: argparse.Namespace) -> tuple[Indenter, Table]:
     """What a slow indentation needs, and raw settings; raises BadInput with every fault of both."""
-    return _read(args, partial(load_indenter, Indenter))
+    return _read(args, lambda reader: reader.indenter(Indenter))
 
 
-def _read(args: argparse.Namespace, reader: Callable[..., tuple[Read, Table]]) -> tuple[Read, Table]:
-    overrides = overrides_of(args)
+def pairs(texts: Iterable[str], option: str, accepted: str) -> Iterator[tuple[str, str]]:
+    """`KEY=VALUE`, each as a pair. Raises BadInput, which says what is `accepted`."""
+    for text in texts:
+        key, sign, value = (part.strip() for part in text.partition("="))
+        if not sign or not key:
+            raise BadInput(Fault(option, text, accepted))
+        yield key, value
+
+
+def _read(args: argparse.Namespace, make: Callable[[SceneReader], tuple[Read, Table]]) -> tuple[Read, Table]:
+    overrides, path = overrides_of(args), SCENES.resolved(args.scene)
+    tables = overridden(parsed(path), overrides, path.name)
     try:
-        scene, table = reader(args.scene, overrides)
+        scene, table = make(SceneReader(path.name, tables, path.parent))
     except BadInput as bad:
-        raise BadInput([*bad.faults, *_settings_faults(args.scene, overrides)]) from None
+        settings = tables.get("numerics", {})
+        refused = faults(settings, path.name) if isinstance(settings, dict) else []
+        raise BadInput([*bad.faults, *refused]) from None
     tolerance = getattr(args, "tolerance", None)
     fixed = any(text.split("=")[0].strip() == "numerics.tolerance" for text in args.overrides)
     if tolerance is not None and not fixed:
@@ -158,16 +170,6 @@ def _read(args: argparse.Namespace, reader: Callable[..., tuple[Read, Table]]) -
         if refused := faults({"tolerance": table["tolerance"]}, ""):
             raise BadInput(Fault("--tolerance", "", fault.message) for fault in refused)
     return scene, table
-
-
-def _settings_faults(scene: str, overrides: dict[str, object]) -> list[Fault]:
-    """Faults of the settings in a scene file whose physics is faulty too."""
-    try:
-        path = SCENES.resolved(scene)
-        table = overridden(parsed(path), overrides, path.name).get("numerics", {})
-    except BadInput:  # no TOML at all, which has been said
-        return []
-    return faults(table, path.name) if isinstance(table, dict) else []
 
 
 def number(text: str, option: str) -> float:
@@ -263,16 +265,25 @@ class StudyRun:
     ) -> int:
         """Publish files and charts, say what was found, complain of what missed its tolerance; the exit code."""
 
-        def written(where: Path) -> None:
-            write(where)
+        def draw(where: Path) -> None:
             self.progress("chart")
             plot(where)
 
-        content, told = publish(self.where, written, record)
+        content, told = publish(self.where, write, draw, record=record)
         say(self.args, content, [*lines, told], title)
         if missed:
             complain(missed)
         return NOT_REACHED if missed else DONE
+
+
+@contextmanager
+def recorded(write: Callable[[str], object]) -> Iterator[None]:
+    """What comes to no end within is written, in the words of its failure, before it is told."""
+    try:
+        yield
+    except NotReached as failure:
+        write(str(failure))
+        raise
 
 
 def finite_exponents(args: argparse.Namespace, study: str, rows: Callable[[], Sequence[StrainedRow]]) -> int:
@@ -287,12 +298,12 @@ def finite_exponents(args: argparse.Namespace, study: str, rows: Callable[[], Se
     return run.finish(f"{study}_finite.json", told(found), write, plot)
 
 
-def publish(where: Path, write: Callable[[Path], object], record: str = RECORD) -> tuple[Table, str]:
-    """What `write` leaves in the folder it is given becomes the results, all at once, `record` being the JSON file that
+def publish(where: Path, *writers: Callable[[Path], object], record: str = RECORD) -> tuple[Table, str]:
+    """What these leave in the folder they are given becomes the results, all at once, `record` being the JSON file that
     names them; its content, and a line that says where. Raises CannotWrite.
     """
     older = (where / record).is_file()
-    content = publish_files(where, write, record)
+    content = publish_files(where, lambda folder: [write(folder) for write in writers], record)
     return content, f"written to {where}{', in place of older results' if older else ''}"
 
 

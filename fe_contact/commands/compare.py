@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,12 +30,7 @@ def execute(args: argparse.Namespace) -> int:
     run = base.StudyRun.of(args, "compare", scene.name)
     comparison = compared(scene, given, names, measured, run.progress)
     content = comparison_content(comparison)
-
-    def write(folder: Path) -> None:
-        write_comparison(comparison, folder)
-        plot_comparison(comparison, folder)
-
-    _, told = base.publish(run.where, write)
+    _, told = base.publish(run.where, partial(write_comparison, comparison), partial(plot_comparison, comparison))
     for remark in remarks:
         base.complain(remark)
     title = f"{scene.name}: against finite elements"

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
-from lumped.errors import BadInput, Fault, NotReached, addressed, shown
+from lumped.errors import BadInput, Fault, addressed, shown
 from lumped.schema import Table
 
 if TYPE_CHECKING:
@@ -75,20 +75,10 @@ def _fit(asked: FitQuestion) -> int:
 
     args, where = asked.run.args, asked.run.where
     bounds = dict(_bounds(args.bounds))
-    try:
-        with asked.addressed():
-            found = fit(
-                asked.curve, args.law, asked.scene, asked.free, asked.fixed, bounds, args.peak, asked.run.progress
-            )
-    except NotReached as failure:
-        write_failure(where, args.law, str(failure))
-        raise
-
-    def write(folder: Path) -> None:
-        found.write_files(folder)
-        plot_fit(asked.curve, found, folder)
-
-    _report(args, asked.scene, found, *base.publish(where, write, RECORD))
+    with base.recorded(partial(write_failure, where, args.law)), asked.addressed():
+        found = fit(asked.curve, args.law, asked.scene, asked.free, asked.fixed, bounds, args.peak, asked.run.progress)
+    published = base.publish(where, found.write_files, partial(plot_fit, asked.curve, found), record=RECORD)
+    _report(args, asked.scene, found, *published)
     return base.DONE if found.result.converged else base.NOT_REACHED
 
 
@@ -156,11 +146,8 @@ def _check_ranking(args: argparse.Namespace) -> None:
 
 def _pairs(text: str, option: str) -> Iterator[tuple[str, str]]:
     """`a=1,b=2` as pairs. Raises BadInput."""
-    for part in filter(None, (part.strip() for part in text.split(","))):
-        name, sign, value = (side.strip() for side in part.partition("="))
-        if not sign or not name:
-            raise BadInput(Fault(option, part, "accepted: name=value, separated by commas"))
-        yield name, value
+    parts = filter(None, (part.strip() for part in text.split(",")))
+    return base.pairs(parts, option, "accepted: name=value, separated by commas")
 
 
 def _bounds(text: str) -> Iterator[tuple[str, tuple[float, float]]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import re
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -57,12 +58,7 @@ def execute(args: argparse.Namespace) -> int:
         for warning in warnings:  # of curves that look odd: they may be why
             base.complain(warning)
         raise
-
-    def write(folder: Path) -> None:
-        found.write_files(folder)
-        plot_identified(found, folder)
-
-    content, told = base.publish(where, write, RECORD)
+    content, told = base.publish(where, found.write_files, partial(plot_identified, found), record=RECORD)
     lines = [*summary(found), told]
     if args.write is not None:
         _write_scene(args.write, found)

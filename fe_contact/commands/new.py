@@ -27,6 +27,8 @@ from lumped.targets import TARGETS
 
 COLUMN = 28  # look: where comments begin
 FOLDERS: Mapping[str, Folder[object]] = {"striker": SHAPES, "target": TARGETS, "material": NETWORKS}
+BODIES = {"striker": (SHAPES, STRIKER_KEYS), "target": (TARGETS, TARGET_KEYS)}
+KINDS = ("shape", "law")  # asked for before
 START = {"striker": "sphere", "target": "half_space", "material": "sls"}
 MATERIALS: Mapping[str, Table] = {  # a polymer's numbers; a law that reads a file of the user's has none
     "elastic": {"E": 1.0e6},
@@ -105,23 +107,24 @@ def _shape(scene: Table, part: str) -> object:
 def commented(name: str, tables: Table) -> str:
     """A scene file: every key with its meaning, range and unit; those that are not set, behind a #."""
     lines = [f"# {line}" for line in HEAD] + [f"name = {toml_text({'x': name})[4:].strip()}"]
-    for part, folder, common in (("striker", SHAPES, STRIKER_KEYS), ("target", TARGETS, TARGET_KEYS)):
-        body = {key: value for key, value in tables.get(part, {}).items() if key != "material"}
-        (own,) = alternatives(folder, body.get("shape"))
-        lines += _section(part, body, {"shape": Key(Member(folder.package), "which kind"), **own, **common})
-        if "material" in tables.get(part, {}):
-            material = tables[part]["material"]
-            law = Key(Member(NETWORKS.package), "how it deforms")
-            of_law = {"law": law, **_network_keys(material), **keys_of(Material)}
-            lines += _section(f"{part}.material", material, of_law)
+    for path, table, keys in _bodies(tables):
+        lines += _section(path, {key: value for key, value in table.items() if key != "material"}, keys)
     for part, keys in SECTIONS.items():
         lines += _section(part, tables.get(part, {}), keys)
     return "\n".join(lines) + "\n"
 
 
-def _network_keys(material: Table) -> Mapping[str, Key]:
-    """Keys of the law of a material, in the way that it is given."""
-    return max(alternatives(NETWORKS, material.get("law")), key=lambda keys: len(keys.keys() & material.keys()))
+def _bodies(tables: Table) -> Iterator[tuple[str, Table, Mapping[str, Key]]]:
+    """The tables of both bodies and of their materials, where each stands, and its keys in the way that it is given."""
+    for part, (folder, common) in BODIES.items():
+        body = tables.get(part, {})
+        (own,) = alternatives(folder, body.get("shape"))
+        yield part, body, {"shape": Key(Member(folder.package), "which kind"), **own, **common}
+        if material := body.get("material"):
+            law = Key(Member(NETWORKS.package), "how it deforms")
+            ways = alternatives(NETWORKS, material.get("law"))
+            own = max(ways, key=lambda keys: len(keys.keys() & material.keys()))
+            yield f"{part}.material", material, {"law": law, **own, **keys_of(Material)}
 
 
 def _section(path: str, table: Table, keys: Mapping[str, Key]) -> Iterator[str]:
@@ -153,18 +156,10 @@ def _kind(part: str, given: str | None, asking: bool) -> str:
 
 def _ask(tables: Table) -> None:
     """Ask for the numbers of both bodies and of their materials; an empty answer keeps what stands there."""
-    for part, folder, common in (("striker", SHAPES, STRIKER_KEYS), ("target", TARGETS, TARGET_KEYS)):
-        body = tables[part]
-        (own,) = alternatives(folder, body.get("shape"))
-        _ask_each(part, body, {**own, **common})
-        if material := body.get("material"):
-            _ask_each(f"{part}.material", material, {**_network_keys(material), **keys_of(Material)})
-
-
-def _ask_each(path: str, table: Table, keys: Mapping[str, Key]) -> None:
-    for name, value in table.items():
-        if name in keys:
-            table[name] = _answered(f"{path}.{name}", value, keys[name])
+    for path, table, keys in _bodies(tables):
+        for name, value in table.items():
+            if name in keys and name not in KINDS:
+                table[name] = _answered(f"{path}.{name}", value, keys[name])
 
 
 def _answered(question: str, start: object, key: Key) -> object:

@@ -6,7 +6,6 @@ import argparse
 from functools import partial
 
 from fe_contact.commands import base
-from lumped.errors import NotReached
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -22,7 +21,7 @@ def execute(args: argparse.Namespace) -> int:
         case.check_laws(names)
     run = base.StudyRun.of(args, "pound", case.name)
     compared = None
-    try:
+    with base.recorded(partial(write_failure, case, where=run.where)):
         if args.calibrate is None:
             found = study(case, names, run.progress)
         else:
@@ -30,9 +29,6 @@ def execute(args: argparse.Namespace) -> int:
 
             compared = calibrated_study(case, names, args.calibrate, progress=run.progress)
             found = compared.study
-    except NotReached as failure:
-        write_failure(case, str(failure), run.where)
-        raise
     title = f"{case.name}: {case.end_time:g} s"
     changes = compared.told() if compared else []
     write = partial(write_pound, found, beside=compared.to_json() if compared else None)

@@ -6,7 +6,6 @@ import argparse
 from functools import partial
 
 from fe_contact.commands import base
-from lumped.errors import NotReached
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -18,11 +17,8 @@ def execute(args: argparse.Namespace) -> int:
 
     case = load(args.file, base.overrides_of(args))
     run = base.StudyRun.of(args, "ptmd", case.name)
-    try:
+    with base.recorded(partial(write_failure, case, where=run.where)):
         found = study(case, run.progress)
-    except NotReached as failure:
-        write_failure(case, str(failure), run.where)
-        raise
     title = f"{case.name}: {case.end_time:g} s of free vibration"
     write, plot = partial(write_ptmd, found), partial(plot_study, found)
     code = run.finish(RECORD, told(found), write, plot, title, missed=found.convergence.message)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import argparse
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
-from lumped.errors import BadInput, Fault, NotReached
+from lumped.errors import BadInput, Fault
 from lumped.result.result import Result, write_failure
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
@@ -30,11 +31,8 @@ def execute(args: argparse.Namespace) -> int:
     where = base.folder(args, "run", scene.name)
     scene, taken = _modelled(args, scene, table)
     _check(args, scene)
-    try:
+    with base.recorded(partial(write_failure, where, scene, args.method)):
         return _impact(args, scene, table, where, taken)
-    except NotReached as failure:
-        write_failure(where, scene, args.method, str(failure))
-        raise
 
 
 def _modelled(args: argparse.Namespace, scene: Scene, table: Table) -> tuple[Scene, list[str]]:
@@ -52,7 +50,7 @@ def _modelled(args: argparse.Namespace, scene: Scene, table: Table) -> tuple[Sce
 
 
 def _impact(args: argparse.Namespace, scene: Scene, table: Table, where: Path, taken: list[str]) -> int:
-    from fe_contact.methods import settings, simulate
+    from fe_contact.methods import lines_of, settings, simulate
 
     if args.method == "fe":
         from fe_contact.reference import answered
@@ -64,7 +62,8 @@ def _impact(args: argparse.Namespace, scene: Scene, table: Table, where: Path, t
             _check_taken(args.method, scene.model, result.model)
     content, told = base.publish(where, lambda folder: _write(args, solved, result, folder))
     title, *lines = result.summary().split("\n  ")
-    return base.report(args, result, content, [*taken, *_weighed(result), *lines, told], title, scene.model)
+    weighed = (f"weighed: {line}" for line in lines_of(result.weighed))
+    return base.report(args, result, content, [*taken, *weighed, *lines, told], title, scene.model)
 
 
 def _check_taken(method: str, asked: Model, answered: Model) -> None:
@@ -73,13 +72,6 @@ def _check_taken(method: str, asked: Model, answered: Model) -> None:
     if names:
         reason = f"sufficient: that takes {', '.join(names)}, which {method} leaves out; accepted: --method fe"
         raise BadInput(Fault("--model", "", reason))
-
-
-def _weighed(result: Result) -> list[str]:
-    """The methods that were weighed, where the cheapest was asked for."""
-    from fe_contact.methods import lines_of
-
-    return [f"weighed: {line}" for line in lines_of(result.weighed)]
 
 
 def _write(args: argparse.Namespace, solved: Solved | None, result: Result, folder: Path) -> None:

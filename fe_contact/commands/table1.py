@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 from functools import partial
-from pathlib import Path
 
 from fe_contact.commands import base
 
@@ -20,13 +19,9 @@ def execute(args: argparse.Namespace) -> int:
 
     run = base.StudyRun.of(args, "table1", "paper")
     trials = table1(run.where, run.progress)
+    from fe_contact.studies.table1.chart import plot_table1  # matplotlib, once the two processes are gone
 
-    def plot(folder: Path) -> None:
-        from fe_contact.studies.table1.chart import plot_table1  # matplotlib, once the two processes are gone
-
-        plot_table1(trials, folder)
-
-    write = partial(write_table1, trials)
+    write, plot = partial(write_table1, trials), partial(plot_table1, trials)
     return run.finish("table1.json", told(trials), write, plot, missed=undecided(trials))
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from functools import partial
 from math import inf
 from typing import TYPE_CHECKING
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from fe_contact.studies.transfer.study import Asked
 
 STATES = Count(2, 100)  # work: of one key; a reference each
+START = "accepted: KEY=VALUE"
 RANGE = "accepted: KEY=low..high:n, as striker.velocity=0.01..0.1:5, low below high and above zero, n from 2 to 100"
 
 
@@ -43,8 +44,8 @@ def asked_of(args: argparse.Namespace, scene: Scene) -> Asked:
 
     if args.method is not None and (reason := refusal(args.method)):
         raise BadInput(Fault("--method", "", reason))
-    start = {key: base.number(value, "--from") for key, value in _pairs(args.start, "--from", "accepted: KEY=VALUE")}
-    over = {key: values_of(key, text) for key, text in _pairs(args.over, "--over", RANGE)}
+    start = {key: base.number(value, "--from") for key, value in base.pairs(args.start, "--from", START)}
+    over = {key: values_of(key, text) for key, text in base.pairs(args.over, "--over", RANGE)}
     laws = () if args.laws == "all" else law_names(args.laws)
     return Asked(laws, start, over, args.calibrate, base.number(args.within, "--within"), args.method)
 
@@ -61,15 +62,6 @@ def values_of(key: str, text: str) -> tuple[float, ...]:
         raise BadInput(Fault("--over", key, f"{shown(text)}: {RANGE}"))
     ratio = (last / first) ** (1.0 / (number - 1))
     return (*(first * ratio**i for i in range(number - 1)), last)
-
-
-def _pairs(texts: Sequence[str], option: str, accepted: str) -> Iterator[tuple[str, str]]:
-    """`KEY=VALUE`, each as a pair. Raises BadInput."""
-    for text in texts:
-        key, sign, value = (part.strip() for part in text.partition("="))
-        if not sign or not key:
-            raise BadInput(Fault(option, text, accepted))
-        yield key, value
 
 
 def _several(name: str, **rest: str) -> Callable[[argparse.ArgumentParser], object]:

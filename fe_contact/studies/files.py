@@ -10,7 +10,7 @@ import numpy as np
 from fe_contact.errors import import_of
 from lumped.schema import Table
 from lumped.schema.csv_file import write_csv
-from lumped.schema.json_file import plain, write_json
+from lumped.schema.json_file import encoded, plain, write_json
 
 Line = Mapping[str, object]  # cells by their columns
 
@@ -25,13 +25,13 @@ def write_study(
     """Write every table as ``<name>.csv``, and ``<record>.json``, into a folder, made when it is not there.
 
     A table's header is what its lines hold, in their order, after what `headers` names, lines or none. Returns the
-    content of the record, plain.
+    content of the record, plain: a dataclass in it as a dictionary of its fields.
     """
     where.mkdir(parents=True, exist_ok=True)
     for name, lines in tables.items():
         header = list(dict.fromkeys([*(headers or {}).get(name, ()), *(key for line in lines for key in line)]))
         write_csv(where / f"{name}.csv", header, [[line.get(key) for key in header] for line in lines])
-    written: Table = plain(content)
+    written: Table = plain(encoded(content))
     write_json(where / f"{record}.json", written)
     return written
 

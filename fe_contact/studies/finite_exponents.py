@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
@@ -18,7 +18,7 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.indentation import indent
-from fe_contact.progress import Progress, silent
+from fe_contact.progress import Progress
 from fe_contact.studies import journal
 from fe_contact.studies.files import Line, lines_of, write_study
 from lumped.errors import BadInput, NotReached
@@ -87,6 +87,11 @@ def local_exponent(depth: Array, force: Array, relative: Array) -> tuple[Array, 
     left, right = np.maximum(places - 1, 0), np.minimum(places + 1, depth.size - 1)
     width = np.log(depth[right] / depth[left])
     return np.log(force[right] / force[left]) / width, (relative[right] + relative[left]) / width
+
+
+def zero_after(x: Array, y: Array, place: int) -> float:
+    """Where the straight line from one point to the next meets zero."""
+    return float(x[place] - y[place] * (x[place + 1] - x[place]) / (y[place + 1] - y[place]))
 
 
 def first_beyond(share: Array, departure: Array, bar: Array, limit: float) -> Quantity | None:
@@ -163,12 +168,10 @@ def departures(row: StrainedRow) -> Departures:
         return Departures(row, refused=str(failure))
 
 
-def finite_exponents(
-    rows: Sequence[StrainedRow], where: Path, progress: Progress = silent, jobs: int = 1
-) -> tuple[Departures, ...]:
-    """Every row, by so many processes; kept in the folder `where`."""
+def finite_exponents(rows: Sequence[StrainedRow], where: Path, progress: Progress) -> tuple[Departures, ...]:
+    """Every row; kept in the folder `where`."""
     calls = {row.label: partial(departures, row) for row in rows}
-    return tuple(journal.rows(where / KEPT, calls, progress, jobs).values())
+    return tuple(journal.rows(where / KEPT, calls, progress).values())
 
 
 def told(found: Sequence[Departures]) -> list[str]:
@@ -273,10 +276,7 @@ def _depths(found: Departures, energy: str) -> list[Line]:
 def _described(found: Departures) -> Table:
     """One row of the record."""
     row = found.row
-    ends = {
-        energy: {f"{limit:g}": (end := found.end(energy, limit)) and asdict(end) for limit in LIMITS}
-        for energy in found.large
-    }
+    ends = {energy: {f"{limit:g}": found.end(energy, limit) for limit in LIMITS} for energy in found.large}
     return {
         "row": row.label,
         "scene": row.indenter.to_dict(),

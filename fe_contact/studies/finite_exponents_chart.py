@@ -13,7 +13,6 @@ from fe_contact.studies.finite_exponents import ENERGIES, LIMITS, Departures
 from fe_contact.studies.style import Look
 from lumped.result.model_ledger import ENERGY_NAMES
 
-TITLE_WIDTH = 132  # characters
 PANEL = 2.7  # height, in
 COLUMNS, LINE = 2, 0.16  # of the names below the panels; height of a line of them, in
 DASHES = ("-", "--")  # look: by energy; on the right geometry and material
@@ -24,11 +23,11 @@ LINES = [
 ]
 
 
-def plot_finite(study: str, found: Sequence[Departures], where: Path) -> tuple[Path, Path]:
-    """Write ``<study>_finite.svg`` and ``.png`` into the folder ``where``; their paths."""
+def plot_finite(study: str, found: Sequence[Departures], where: Path) -> None:
+    """Write ``<study>_finite.svg`` and ``.png`` into the folder ``where``."""
     shown = [one for one in found if one.small is not None]
     title, below = "Exponents at large strains", 0.5 + LINE * -(-len(shown) // COLUMNS)
-    with style.sheet(where, f"{study}_finite", title, LINES, PANEL, width=TITLE_WIDTH, below=below) as sheet:
+    with style.sheet(where, f"{study}_finite", title, LINES, PANEL, below=below) as sheet:
         left, right = sheet.panels(1, 2, 0.075, 0.985, wspace=0.22)
         for place, one in enumerate(shown):
             _row(left, right, one, (*style.CYCLE, style.GREY, style.BLACK)[place % 8])
@@ -40,7 +39,6 @@ def plot_finite(study: str, found: Sequence[Departures], where: Path) -> tuple[P
             style.label(axes, letter, title)
         handles, labels = left.get_legend_handles_labels()
         sheet.figure.legend(handles, labels, loc="lower left", bbox_to_anchor=(0.06, 0.0), ncols=COLUMNS)
-    return sheet.paths
 
 
 def _row(left: Axes, right: Axes, one: Departures, colour: str) -> None:

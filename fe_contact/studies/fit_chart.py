@@ -21,7 +21,7 @@ from lumped.fit.record import LEVEL
 from lumped.result.score import Curve
 
 PANELS = 3.1  # height of the two panels with what is between them, in
-TITLE_WIDTH, WIDE_TITLE = 74, 128  # characters: over one fit, over all
+TITLE_WIDTH = 74  # characters: over one fit
 MOST_DIGITS = 7  # look: significant digits of a value, at most
 MOST_POINTS = 400  # a denser curve is drawn as a line
 COLUMNS, HEIGHT = 4, 1.35  # of all laws: panels beside each other; in, of one of them with what is below it
@@ -29,8 +29,8 @@ SCALES = (100, 50, 20, 10, 5, 2, 1, 0.5)  # look: what is left is drawn so many 
 ROOM = 0.5  # of the peak, for what is left, to either side
 
 
-def plot_fit(curve: Curve, found: Fit, where: Path) -> tuple[Path, Path]:
-    """Write ``fit.svg`` and ``fit.png`` into the folder ``where``; their paths."""
+def plot_fit(curve: Curve, found: Fit, where: Path) -> None:
+    """Write ``fit.svg`` and ``fit.png`` into the folder ``where``."""
     lines = [f"{name} = {_shown(estimate)}" for name, estimate in found.parameters.items()]
     held = ", peak held" if found.peak_held else ""
     lines.append(f"normalized error {found.error_in_words}{held}; intervals of {100.0 * LEVEL:g} %")
@@ -40,7 +40,6 @@ def plot_fit(curve: Curve, found: Fit, where: Path) -> tuple[Path, Path]:
         sheet.figure.subplots_adjust(0.15, sheet.bottom, 0.965, sheet.top, hspace=0.38)
         _force(force, curve, found)
         _left(left, curve, found)
-    return sheet.paths
 
 
 def _shown(estimate: Estimate) -> str:
@@ -82,15 +81,15 @@ def _left(axes: Axes, curve: Curve, found: Fit) -> None:
     style.label(axes, "b", "what is left, over the peak")
 
 
-def plot_ranking(ranked: Sequence[RankedFit], curve: Curve, where: Path) -> tuple[Path, Path]:
-    """Write ``fits.svg`` and ``fits.png`` into the folder ``where``; their paths."""
+def plot_ranking(ranked: Sequence[RankedFit], curve: Curve, where: Path) -> None:
+    """Write ``fits.svg`` and ``fits.png`` into the folder ``where``."""
     shown = [one for one in ranked if one.fit is not None]
     rows = -(-len(shown) // COLUMNS)
     left_out = ", ".join(one.law for one in ranked if one.fit is None)
     lines = ["grey: curve; orange: law; blue: the curve less the law, enlarged as told. AICc over that of the best law"]
     lines += [f"without a fit: {left_out}"] if left_out else []
     size = rows * HEIGHT
-    with style.sheet(where, "fits", "every law, fitted", lines, size, width=WIDE_TITLE, above=0.34) as sheet:
+    with style.sheet(where, "fits", "every law, fitted", lines, size, above=0.34) as sheet:
         panels = sheet.panels(rows, COLUMNS, 0.085, 0.985, hspace=0.62, wspace=0.12)
         for i, (axes, one) in enumerate(zip(panels, shown, strict=False)):
             _panel(axes, one, curve)
@@ -104,7 +103,6 @@ def plot_ranking(ranked: Sequence[RankedFit], curve: Curve, where: Path) -> tupl
                 axes.set_xlabel(f"time, {second}")
             if i % COLUMNS == 0:
                 axes.set_ylabel(f"force, {newton}")
-    return sheet.paths
 
 
 def _panel(axes: Axes, one: RankedFit, curve: Curve) -> None:

@@ -14,15 +14,14 @@ from lumped.identify.record import LEVEL
 
 PANELS = 3.2  # height of a row of curves with their residuals, in
 COLUMNS, MOST = 3, 6  # look: curves beside each other, and in all
-TITLE_WIDTH = 128  # characters
 BAND = 2.0  # deviations of the noise
 ABOVE: style.Look = {"linewidth": 0.0, "zorder": 3.0}  # look: bands before the rows
 PREDICTED = {**ABOVE, "color": style.SKY, "alpha": 0.5}
 LAW = {**ABOVE, "color": style.VERMILION, "alpha": 0.6}
 
 
-def plot_identified(found: Identified, where: Path) -> tuple[Path, Path]:
-    """Write ``identified.svg`` and ``identified.png`` into the folder ``where``; their paths."""
+def plot_identified(found: Identified, where: Path) -> None:
+    """Write ``identified.svg`` and ``identified.png`` into the folder ``where``."""
     curves = found.curves[:MOST]
     columns = min(COLUMNS, len(curves))
     rows = -(-len(curves) // columns)
@@ -31,7 +30,7 @@ def plot_identified(found: Identified, where: Path) -> tuple[Path, Path]:
     if found.posterior is not None:
         lines.append(f"orange, below: where the law lies, {100.0 * LEVEL:g} %")
     title, size = f"{found.source.removesuffix('.toml')}: identified", style.COLUMN if columns == 1 else style.PAGE
-    width = TITLE_WIDTH if columns > 1 else TITLE_WIDTH // 2
+    width = style.CHARACTERS if columns > 1 else style.CHARACTERS // 2
     law = "Ting's law" if found.by_reference is None else "Ting's law, corrected"
     with style.sheet(where, "identified", title, lines, rows * PANELS, width=width, size=size, above=0.34) as sheet:
         left, right = (0.19, 0.965) if columns == 1 else (0.095, 0.985)
@@ -42,7 +41,6 @@ def plot_identified(found: Identified, where: Path) -> tuple[Path, Path]:
             rest = sheet.figure.add_subplot(inner[1], sharex=force)
             _force(force, curve, law, "abcdef"[i])
             _left(rest, curve)
-    return sheet.paths
 
 
 def _verdict(found: Identified) -> str:

@@ -62,7 +62,7 @@ def write_paper(study: PaperStudy, where: Path) -> Table:
         ],
         "misprints": [_numbers(values) | asdict(misprint) for misprint, values in study.misprints],
         "grid": [_grid_row(row) for row in study.grid],
-        "examples": asdict(study.examples),
+        "examples": study.examples,
         "provenance": provenance(),
     }
     lines = {name: [_line(row, columns) for row in content[key]] for name, (key, columns) in TABLES.items()}

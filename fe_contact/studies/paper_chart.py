@@ -26,7 +26,6 @@ from lumped.paper.value import MICRO
 from lumped.result.history import History
 from lumped.result.result import Result
 
-TITLE_WIDTH = 130  # characters
 POINTS = 401  # of a curve
 HEIGHT_6, HEIGHT_GRID, HEIGHT_9, HEIGHT_10, HEIGHT_15 = 3.7, 5.4, 3.5, 3.3, 3.3  # in
 THIN: Look = {"linewidth": 0.6, "alpha": 0.75}  # look
@@ -53,25 +52,26 @@ MEMORY_KEY = (
 )
 
 
-def plot_paper(study: PaperStudy, where: Path) -> tuple[Path, ...]:
-    """Write ``fig6`` to ``fig10`` and ``fig15`` as SVG and PNG into ``where``; their paths. Raises NotReached.
+def plot_paper(study: PaperStudy, where: Path) -> None:
+    """Write ``fig6`` to ``fig10`` and ``fig15`` as SVG and PNG into ``where``. Raises NotReached.
 
     A CSV of each holds the curves that it draws.
     """
     with style.look():
-        steel = (*_fig6(study, where), *_grid(study, 7, where), *_grid(study, 8, where))
-        concrete = (*_fig9(study.examples, where), *_fig10(study.examples, where))
-        return (*steel, *concrete, *_fig15(study.examples, where))
+        _fig6(study, where)
+        _grid(study, 7, where)
+        _grid(study, 8, where)
+        for draw in (_fig9, _fig10, _fig15):
+            draw(study.examples, where)
 
 
-def _saved(figure: Figure, where: Path, name: str) -> tuple[Path, Path]:
+def _saved(figure: Figure, where: Path, name: str) -> None:
     """The chart, and beside it what it draws."""
-    paths = style.save(figure, where, name)
+    style.save(figure, where, name)
     style.write_curves(figure, where, name)
-    return paths
 
 
-def _fig6(study: PaperStudy, where: Path) -> tuple[Path, Path]:
+def _fig6(study: PaperStudy, where: Path) -> None:
     steel = study.examples.steel
     figure = Figure(figsize=(style.PAGE, HEIGHT_6))
     axes = figure.add_axes((0.075, 0.13, 0.6, 0.68))
@@ -86,8 +86,8 @@ def _fig6(study: PaperStudy, where: Path) -> tuple[Path, Path]:
         f"Dotted: the measured peak, {steel.measured_peak:g} N, which damped curves have too. Along them: e, which the "
         "paper does not print."
     ]
-    style.heading(figure, "Fig. 6 drawn again: the steel ball", lines, TITLE_WIDTH)
-    return _saved(figure, where, "fig6")
+    style.heading(figure, "Fig. 6 drawn again: the steel ball", lines)
+    _saved(figure, where, "fig6")
 
 
 def _curves_6(steel: Steel) -> list[tuple[str, Result, Look]]:
@@ -117,15 +117,16 @@ def _damped(axes: Axes, steel: Steel, law: str, time: float, force: float) -> No
         axes.text(time * place, force * level, f"{e:g}", color=colour, **ON_CURVE)
 
 
-def _grid(study: PaperStudy, number: int, where: Path) -> tuple[Path, Path]:
+def _grid(study: PaperStudy, number: int, where: Path) -> None:
     rows = [row for row in study.grid if row.figure == number]
     figure = Figure(figsize=(style.PAGE, HEIGHT_GRID))
     panels = figure.subplots(2, 2, sharex=True, sharey=number == 8).ravel()
     figure.subplots_adjust(0.07, 0.125, 0.985, 0.845, hspace=0.26, wspace=0.16)
     held, varied = ("R2", "R1") if number == 7 else ("R1", "R2")
     for i, axes in enumerate(panels):
-        _panel(axes, [row for row in rows if row.panel == i], varied)
-        style.label(axes, "abcd"[i], f"{held} = {_named(rows, i, held)}")
+        own = [row for row in rows if row.panel == i]
+        _panel(axes, own, varied)
+        style.label(axes, "abcd"[i], f"{held} = {_value(own[0], held)}")
     panels[0].set_xlim(0.0, 1.03 * MICRO * max(row.exact.history.time[-1] for row in rows))
     for axes in panels[2:]:
         axes.set_xlabel("time, µs")
@@ -133,8 +134,8 @@ def _grid(study: PaperStudy, number: int, where: Path) -> tuple[Path, Path]:
         axes.set_ylabel("force, N")
     figure.legend(handles=LAW_KEY, loc="lower center", ncols=2)
     lines = ["The law of the paper, and what it approximates in the rebound; until the deepest instant they are one."]
-    style.heading(figure, f"Fig. {number} drawn again: the steel ball, {varied} varied", lines, TITLE_WIDTH)
-    return _saved(figure, where, f"fig{number}")
+    style.heading(figure, f"Fig. {number} drawn again: the steel ball, {varied} varied", lines)
+    _saved(figure, where, f"fig{number}")
 
 
 def _panel(axes: Axes, rows: Sequence[GridRow], varied: str) -> None:
@@ -151,15 +152,11 @@ def _plot(axes: Axes, result: Result, **look: Any) -> None:
     axes.plot(MICRO * history.time, history.force, **look)
 
 
-def _named(rows: Sequence[GridRow], panel: int, held: str) -> str:
-    return _value(next(row for row in rows if row.panel == panel), held)
-
-
 def _value(row: GridRow, name: str) -> str:
     return f"{row.R1:g}" if name == "R1" else style.readable(row.R2, "s", 3)
 
 
-def _fig9(examples: Examples, where: Path) -> tuple[Path, Path]:
+def _fig9(examples: Examples, where: Path) -> None:
     """Over peak and contact time of the proposed model the assumed radius drops out."""
     concrete, steel = examples.concrete, examples.steel
     velocity = min(concrete.velocities)
@@ -175,8 +172,8 @@ def _fig9(examples: Examples, where: Path) -> tuple[Path, Path]:
         "Over peak and time of the proposed model; damped curves have its peak. Along them: e, which the paper does "
         "not print, nor does its text hold the measured curve."
     ]
-    style.heading(figure, f"Fig. 9 drawn again: concrete at {velocity:g} m/s", lines, TITLE_WIDTH)
-    return _saved(figure, where, "fig9")
+    style.heading(figure, f"Fig. 9 drawn again: concrete at {velocity:g} m/s", lines)
+    _saved(figure, where, "fig9")
 
 
 def _over(steel: Steel, whole: History, momentum: float, share: float) -> tuple[float, float]:
@@ -191,7 +188,7 @@ def _shares(axes: Axes) -> None:
     axes.set(xlabel="time / contact time", ylabel="force / peak", xlim=(0.0, None), ylim=(0.0, 1.05))
 
 
-def _fig10(examples: Examples, where: Path) -> tuple[Path, Path]:
+def _fig10(examples: Examples, where: Path) -> None:
     """Forces and times over those of the uncut impact at the higher velocity: the assumed radius drops out."""
     concrete = examples.concrete
     radius, fast = min(concrete.radii), max(concrete.velocities)
@@ -214,11 +211,11 @@ def _fig10(examples: Examples, where: Path) -> tuple[Path, Path]:
         f"Dotted: the measured peak, by the printed errors of {100 * concrete.peak_error:g} and "
         f"{100 * concrete.jankowski_peak_error:g} %. Cut, the striker leaves as fast as uncut."
     ]
-    style.heading(figure, f"Fig. 10 drawn again: concrete at {fast:g} m/s", lines, TITLE_WIDTH)
-    return _saved(figure, where, "fig10")
+    style.heading(figure, f"Fig. 10 drawn again: concrete at {fast:g} m/s", lines)
+    _saved(figure, where, "fig10")
 
 
-def _fig15(examples: Examples, where: Path) -> tuple[Path, Path]:
+def _fig15(examples: Examples, where: Path) -> None:
     """Raises TooManySteps and NotReached."""
     dents = _dented(examples)
     figure = Figure(figsize=(style.PAGE, HEIGHT_15))
@@ -238,8 +235,8 @@ def _fig15(examples: Examples, where: Path) -> tuple[Path, Path]:
         f"Steel ball, R2 = {R2}. Out of contact the law lets the load depth^1.5 of the surface fall as exp(-t/R2); by "
         "finite elements the depth of its tip falls so, from less."
     ]
-    style.heading(figure, "Fig. 15 as numbers: memory between contacts", lines, TITLE_WIDTH)
-    return _saved(figure, where, "fig15")
+    style.heading(figure, "Fig. 15 as numbers: memory between contacts", lines)
+    _saved(figure, where, "fig15")
 
 
 def _dented(examples: Examples) -> list[DentedSurface]:

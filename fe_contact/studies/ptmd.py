@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from pathlib import Path
 
 from fe_contact.studies.files import Line, lines_of, write_study
@@ -36,10 +35,10 @@ def write_ptmd(study: PtmdStudy, where: Path) -> Table:
         "model_sufficient": study.model_sufficient,
         "message": message,
         "case": study.case.to_dict(),
-        "measures": asdict(main.measures),
+        "measures": main.measures,
         "energy": main.energy.to_dict(),
-        "variants": {name: asdict(result.measures) for name, result in study.results.items()},
-        "convergence": asdict(study.convergence),
+        "variants": {name: result.measures for name, result in study.results.items()},
+        "convergence": study.convergence,
         "model_ledger": [entry.to_json(SMALL) for entry in study.ledger],
         "provenance": provenance(),
     }

@@ -15,7 +15,6 @@ from fe_contact.studies.style import Look, prefixed, readable
 from lumped.ptmd.study import BARE, FULL, PLAIN, PtmdStudy
 
 PANEL = 1.35  # height of a panel, in
-TITLE_WIDTH = 130  # characters
 LINES: dict[str, Look] = {
     BARE: {"color": style.GREY, "linewidth": 0.8},
     PLAIN: {"color": style.ORANGE, "linewidth": 0.9, "linestyle": (0, (4, 1.6))},
@@ -23,8 +22,8 @@ LINES: dict[str, Look] = {
 }
 
 
-def plot_study(study: PtmdStudy, where: Path) -> tuple[Path, Path]:
-    """Write ``ptmd.svg`` and ``ptmd.png`` into the folder ``where``; their paths."""
+def plot_study(study: PtmdStudy, where: Path) -> None:
+    """Write ``ptmd.svg`` and ``ptmd.png`` into the folder ``where``."""
     drawings = [_acceleration, _displacement]
     if study.case.system.damper is not None:
         drawings.append(_stroke)
@@ -33,13 +32,12 @@ def plot_study(study: PtmdStudy, where: Path) -> tuple[Path, Path]:
     lines = _lines(study)
     title = f"{study.case.name}: {next(iter(study.results))}"
     height = PANEL * len(drawings) + 0.5 * (len(drawings) - 1)
-    with style.sheet(where, "ptmd", title, lines, height, width=TITLE_WIDTH, above=0.38) as sheet:
+    with style.sheet(where, "ptmd", title, lines, height, above=0.38) as sheet:
         panels = sheet.figure.subplots(len(drawings), 1, sharex=True, squeeze=False)[:, 0]
         sheet.figure.subplots_adjust(0.085, sheet.bottom, 0.975, sheet.top, hspace=0.5 / PANEL)
         for draw, axes, letter in zip(drawings, panels, "abcd", strict=False):
             draw(axes, study, letter)
         panels[-1].set(xlabel="time, s", xlim=(0.0, study.main.motion.time[-1]))
-    return sheet.paths
 
 
 def _lines(study: PtmdStudy) -> list[str]:

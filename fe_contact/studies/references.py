@@ -38,10 +38,8 @@ from meshes.triangles import Imprint, imprints
 
 PACKAGE, RECORD = "datapackage.json", "references.json"
 SCHEMA = "fe-contact/references/1"
-DIGITS, ROUNDING = (
-    9,
-    1e-8,
-)  # of a history as it is written, and what it may move a force by: below every bar of elements
+DIGITS = 9  # of a history as it is written
+ROUNDING = 1e-8  # what they may move a force by: below every bar of elements
 OURS = ("timing", "work")  # of a result: what another machine has otherwise
 UNITS = {"_per_s": "m/s", "_s": "s", "_m": "m", "_N": "N"}  # by the end of a column's name, the longest first
 
@@ -84,9 +82,14 @@ class Move:
     moved: float | None
 
     @property
+    def size(self) -> float:
+        """By how much it moved, infinite where only one of the two is defined."""
+        return math.inf if self.moved is None else self.moved
+
+    @property
     def agrees(self) -> bool:
         """Whether both can be true."""
-        return self.moved is not None and self.moved <= 1.0
+        return self.size <= 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +118,7 @@ class Renewal:
             return f"{self.scene}: not published: {self.reason}"
         if self.is_new:
             return f"{self.scene}: new"
-        most = max(self.moves, key=lambda move: math.inf if move.moved is None else move.moved)
+        most = max(self.moves, key=lambda move: move.size)
         if most.moved is None:
             return f"{self.scene}: {most.quantity} is undefined in one of both"
         verdict = "agrees" if self.agrees else "DIFFERS"

@@ -14,14 +14,13 @@ from fe_contact.studies.style import Look
 from lumped.restitution import EXACT
 
 COLUMNS, PANEL = 3, 2.45  # panels in a row; height of one, in
-TITLE_WIDTH = 130  # characters
 SAME = 1e-9  # of two curves that are one
 LINES = {"force": "-", "depth": (0, (3, 1.6))}  # look: by exit
 COLOURS = (*style.CYCLE, style.GREY)
 
 
-def plot_restitution(lines: Sequence[RestitutionLine], where: Path) -> tuple[Path, Path]:
-    """Write ``restitution.svg`` and ``restitution.png`` into the folder ``where``; their paths."""
+def plot_restitution(lines: Sequence[RestitutionLine], where: Path) -> None:
+    """Write ``restitution.svg`` and ``restitution.png`` into the folder ``where``."""
     names = list(dict.fromkeys(line.law for line in lines))
     rows = -(-len(names) // COLUMNS)
     text = [
@@ -29,14 +28,13 @@ def plot_restitution(lines: Sequence[RestitutionLine], where: Path) -> tuple[Pat
         "force, dashed where it ends at depth zero and that differs."
     ]
     title = "Coefficient of restitution: asked for and obtained"
-    with style.sheet(where, "restitution", title, text, rows * PANEL, width=TITLE_WIDTH, above=0.3) as sheet:
+    with style.sheet(where, "restitution", title, text, rows * PANEL, above=0.3) as sheet:
         grid = sheet.grid(rows, COLUMNS, 0.065, 0.985, wspace=0.22, hspace=0.38)
         for i, name in enumerate(names):
             axes = sheet.figure.add_subplot(grid[i // COLUMNS, i % COLUMNS])
             _panel(axes, [line for line in lines if line.law == name])
             style.label(axes, chr(ord("a") + i), name)
             axes.set(xlabel="asked" if i + COLUMNS >= len(names) else "", ylabel="" if i % COLUMNS else "obtained")
-    return sheet.paths
 
 
 def _panel(axes: Axes, lines: Sequence[RestitutionLine]) -> None:

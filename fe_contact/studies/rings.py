@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -22,7 +22,7 @@ from fe_contact.progress import Progress, silent
 from fe_contact.reference import fe
 from fe_contact.studies import journal
 from fe_contact.studies.files import Line, lines_of, write_study
-from fe_contact.studies.finite_exponents import SHARES, StrainedRow, local_exponent
+from fe_contact.studies.finite_exponents import SHARES, StrainedRow, local_exponent, zero_after
 from lumped.indentation import Indentation
 from lumped.materials import Material, Relaxation
 from lumped.materials.networks import sls
@@ -187,10 +187,7 @@ def _crossing(curve: RingCurve) -> float | None:
     """Depth at which the factor passes one, m, on a straight line in logarithms."""
     x, y = np.log(curve.found.depth), np.log(curve.factor)
     passed = np.flatnonzero(y[:-1] * y[1:] <= 0.0)
-    if not passed.size:
-        return None
-    i = int(passed[0])
-    return float(np.exp(x[i] - y[i] * (x[i + 1] - x[i]) / (y[i + 1] - y[i])))
+    return float(np.exp(zero_after(x, y, int(passed[0])))) if passed.size else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -274,12 +271,13 @@ def _known(quantity: Quantity) -> tuple[float, float]:
     return quantity.value, quantity.error
 
 
-def write_rings(curves: Sequence[RingCurve], where: Path, impacts: Sequence[RingStruck] = ()) -> Table:
+def write_rings(curves: Sequence[RingCurve], where: Path, impacts: Sequence[RingStruck]) -> Table:
     """Write ``ring.csv``, ``ring_impacts.csv`` and ``ring.json`` into a folder; the content of the last."""
-    tables = {"ring": [line for curve in curves for line in _depths(curve)]}
-    tables |= {"ring_impacts": [_impact(one) for one in impacts]} if impacts else {}
-    described = [_described(curve) for curve in curves]
-    content = {"schema": SCHEMA, "rings": described, "impacts": tables.get("ring_impacts", [])}
+    tables: dict[str, list[Line]] = {
+        "ring": [line for curve in curves for line in _depths(curve)],
+        "ring_impacts": [_impact(one) for one in impacts],
+    }
+    content = {"schema": SCHEMA, "rings": [_described(one) for one in curves], "impacts": tables["ring_impacts"]}
     return write_study(where, "ring", content, tables)
 
 
@@ -314,7 +312,7 @@ def _described(curve: RingCurve) -> Table:
         "contact_modulus": curve.found.modulus,
         "instantaneous_modulus": indenter.modulus(True),
         "converged": curve.found.converged,
-        "verdict": asdict(verdict(curve)),
+        "verdict": verdict(curve),
         "model_ledger": [entry.to_json(curve.found.tolerance) for entry in curve.ledger],
         "error_budget": {cause: float(np.max(error)) for cause, error in curve.found.budget.items()},
     }

@@ -16,7 +16,6 @@ from lumped.paper.ring_impacts import force
 from lumped.scene.scene import Scene
 from lumped.scene.tables import LawChoice
 
-TITLE_WIDTH = 132  # characters
 PANEL = 2.7  # height, in
 LINES = [
     "Finite elements, bars within the lines' width where none is seen. Left: F over (pi/4) E* l depth, 1 (dotted) "
@@ -33,24 +32,24 @@ STRUCK_LINES = [
 ]
 
 
-def plot_rings(curves: Sequence[RingCurve], where: Path, impacts: Sequence[RingStruck] = ()) -> tuple[Path, ...]:
-    """Write ``ring.svg`` and ``ring.png`` into the folder ``where``, of impacts ``fig12`` too; their paths.
+def plot_rings(curves: Sequence[RingCurve], where: Path, impacts: Sequence[RingStruck]) -> None:
+    """Write ``ring`` and, of impacts, ``fig12``, as SVG and PNG, into the folder ``where``.
 
     ``fig12.csv`` holds the curves that it draws. Raises NotReached.
     """
-    return (*_pressed(curves, where), *(_fig12(impacts, where) if impacts else ()))
+    _pressed(curves, where)
+    _fig12(impacts, where)
 
 
-def _fig12(impacts: Sequence[RingStruck], where: Path) -> tuple[Path, Path]:
+def _fig12(impacts: Sequence[RingStruck], where: Path) -> None:
     fastest = {one.ring: one for one in sorted(impacts, key=lambda one: one.velocity)}
     title = "Fig. 12 drawn again on the ring"
-    with style.sheet(where, "fig12", title, STRUCK_LINES, PANEL, width=TITLE_WIDTH) as sheet:
+    with style.sheet(where, "fig12", title, STRUCK_LINES, PANEL) as sheet:
         panels = sheet.panels(1, len(fastest), 0.075, 0.985, wspace=0.22)
         for axes, letter, one in zip(panels, "ab", fastest.values(), strict=False):
             _struck(axes, one)
             style.label(axes, letter, f"{one.ring} at {style.readable(one.velocity, 'm/s', 3)}")
     style.write_curves(sheet.figure, where, "fig12")
-    return sheet.paths
 
 
 def _struck(axes: Axes, one: RingStruck) -> None:
@@ -71,9 +70,9 @@ def _struck(axes: Axes, one: RingStruck) -> None:
     axes.legend(loc="upper right", fontsize=5.6, labelspacing=0.2)
 
 
-def _pressed(curves: Sequence[RingCurve], where: Path) -> tuple[Path, Path]:
+def _pressed(curves: Sequence[RingCurve], where: Path) -> None:
     title = "Rings pressed slowly against the paper's row"
-    with style.sheet(where, "ring", title, LINES, PANEL, width=TITLE_WIDTH) as sheet:
+    with style.sheet(where, "ring", title, LINES, PANEL) as sheet:
         left, right = sheet.panels(1, 2, 0.075, 0.985, wspace=0.22)
         for colour, curve in zip((*style.CYCLE, style.BLACK), curves, strict=False):
             look: Look = {"color": colour, "marker": "o", "markersize": 2.4, "linewidth": 1.0}
@@ -86,7 +85,6 @@ def _pressed(curves: Sequence[RingCurve], where: Path) -> tuple[Path, Path]:
             _finished(axes)
             style.label(axes, letter, title)
         left.legend(loc="upper left", fontsize=5.6, labelspacing=0.2)
-    return sheet.paths
 
 
 def _finished(axes: Axes) -> None:

@@ -23,6 +23,7 @@ from lumped.schema.csv_file import write_csv
 
 COLUMN, PAGE = 3.5, 7.2  # widths of a paper's column and page, in
 TITLE_SIZE, TITLE_LETTERS = 9.5, 11.5  # pt; letters of that size in an inch
+CHARACTERS = 122  # look: of the lines below the title, on a page
 LEAST_TITLE = 0.65  # of that size: a title of more letters is smaller, at most by so much, and then cut
 
 # Okabe and Ito's palette, https://jfly.uni-koeln.de/color/
@@ -85,13 +86,11 @@ def look() -> Iterator[None]:
         yield
 
 
-def save(figure: Figure, where: Path, name: str) -> tuple[Path, Path]:
+def save(figure: Figure, where: Path, name: str) -> None:
     """Write ``name.svg`` and ``name.png`` into a folder, made when it is not there; the same bytes every time."""
     where.mkdir(parents=True, exist_ok=True)
-    paths = where / f"{name}.svg", where / f"{name}.png"
-    figure.savefig(paths[0], metadata={"Date": None})
-    figure.savefig(paths[1], metadata={"Software": None})
-    return paths
+    figure.savefig(where / f"{name}.svg", metadata={"Date": None})
+    figure.savefig(where / f"{name}.png", metadata={"Software": None})
 
 
 def write_curves(figure: Figure, where: Path, name: str) -> None:
@@ -161,7 +160,7 @@ def label(axes: Axes, letter: str, text: str) -> None:
     axes.set_title(rf"$\bf{{{letter}}}$  {text}", pad=5.0)
 
 
-def heading(figure: Figure, title: str, lines: list[str], width: int) -> None:
+def heading(figure: Figure, title: str, lines: list[str], width: int = CHARACTERS) -> None:
     """A bold title and lines below it, wrapped at ``width`` characters, at the figure's upper left."""
     height = figure.get_figheight()
     wrapped = [part for line in lines for part in textwrap.wrap(line, width, subsequent_indent="    ")]
@@ -212,14 +211,15 @@ def sheet(
     lines: list[str],
     panels: float,
     *,
-    width: int,
+    width: int = CHARACTERS,
     above: float = 0.35,
     below: float = 0.45,
     size: float = PAGE,
 ) -> Iterator[Sheet]:
     """A figure to draw on, saved as ``name.svg`` and ``name.png`` in a folder, under a title and wrapped lines.
 
-    `panels`: height of all panels with what is between them, in; `above` and `below` them, in; `size`: width, in.
+    `panels`: height of all panels with what is between them, in; `width`: of the lines, in characters; `above` and
+    `below` the panels, in; `size`: width, in.
     """
     with look():
         above += heading_height(lines, width)

@@ -25,7 +25,6 @@ from lumped.result.history import History
 from lumped.result.score import Curve as Measured
 
 PANELS = 4.6  # height of the four panels with what is around them, in
-TITLE_WIDTH = 122  # characters
 LEAST_SHOWN = 1e-6  # of the peak: the lower end of the logarithmic panel
 LEGEND, ROW, NAMES = 0.3, 0.17, 6  # in, above the panels; a further row of the legend, in, and names in one
 MOST_TIMES = 3.0  # look: of the reference's end, beyond which no law that ends later is shown
@@ -46,9 +45,9 @@ def plot_comparison(comparison: Comparison, where: Path) -> tuple[Path, Path]:
     lines = list(judged(comparison))
     scene = comparison.reference.scene
     further = (len(comparison.judgements) + 1) // NAMES  # rows of the legend, beside the first
-    title, room = f"{scene.name} against finite elements", {"above": 0.55 + ROW * further, "below": 0.65}
+    title, above = f"{scene.name} against finite elements", 0.55 + ROW * further
     ratios = {"width_ratios": (1.25, 1.0), "height_ratios": (1.15, 1.0)}
-    with style.sheet(where, "compare", title, lines, PANELS, width=TITLE_WIDTH, **room) as sheet:
+    with style.sheet(where, "compare", title, lines, PANELS, above=above, below=0.65) as sheet:
         grid = sheet.grid(2, 2, 0.082, 0.982, hspace=0.42, wspace=0.26, **ratios)
         for place, draw in (((0, 0), _force), ((1, 0), _distance), ((0, 1), _radius), ((1, 1), _pressure)):
             draw(sheet.figure.add_subplot(grid[place]), comparison)

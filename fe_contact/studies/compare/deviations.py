@@ -83,11 +83,6 @@ class Told:
         )
 
     @property
-    def jumps(self) -> bool:
-        """Whether the force has two values at some time."""
-        return bool(np.any(np.diff(self.time) == 0.0))
-
-    @property
     def deepest(self) -> float:
         """Time of the maximum depth, s."""
         return float(self.time[np.argmax(self.depth)])
@@ -95,9 +90,8 @@ class Told:
 
 def force_errors(told: Told, candidate: History | Measured) -> dict[str, float | None]:
     """``held_until_max_depth`` relative to the reference's peak; ``history``, norm over norm."""
-    times = (
-        _between_jumps(np.union1d(told.time, candidate.time)) if told.jumps else np.union1d(told.time, candidate.time)
-    )
+    every = np.union1d(told.time, candidate.time)
+    times = _between_jumps(every) if np.any(np.diff(told.time) == 0.0) else every
     force = told.force(times)
     difference = np.abs(candidate.force_at(times) - force)
     norms = np.trapezoid(difference**2, times) / np.trapezoid(force**2, times)
@@ -106,7 +100,7 @@ def force_errors(told: Told, candidate: History | Measured) -> dict[str, float |
 
 
 def _between_jumps(times: Array) -> Array:
-    """The middles of intervals that rounding alone has not made, s: at a jump itself no two curves agree."""
+    """The middles of intervals that rounding alone has not made, s: at a jump, a time twice, no two curves agree."""
     lasting = np.diff(times) > ROUNDING * times[-1]
     return np.asarray(0.5 * (times[1:] + times[:-1])[lasting])
 

@@ -16,12 +16,11 @@ from matplotlib.axes import Axes
 from fe_contact.methods import FE
 from fe_contact.studies import style
 from fe_contact.studies.exponents.impacts import EXACT, ON_LAYER, READERS, ImpactExponents
-from fe_contact.studies.exponents.layers import Check, ExponentCurve, Profile
+from fe_contact.studies.exponents.layers import Check, ExponentCurve
 from fe_contact.studies.exponents.study import Exponents
 from fe_contact.studies.style import Look
 
 PANEL, BIAS_PANEL = 2.35, 1.75  # height of a panel, in: on layers, of impacts
-TITLE_WIDTH = 132  # characters
 ROWS = ("cone", "sphere", "cylinder")
 DASHED, DOTTED = (0, (4, 2)), ":"
 COLOURS = {
@@ -55,11 +54,11 @@ def plot_exponents(found: Exponents, where: Path) -> None:
     plot_impacts(found.impacts, where)
 
 
-def plot_layers(curves: Sequence[ExponentCurve], checks: Sequence[Check], where: Path) -> tuple[Path, Path]:
-    """Write ``exponents.svg`` and ``exponents.png`` into the folder ``where``; their paths."""
+def plot_layers(curves: Sequence[ExponentCurve], checks: Sequence[Check], where: Path) -> None:
+    """Write ``exponents.svg`` and ``exponents.png`` into the folder ``where``."""
     rows = len(ROWS) + 1
     title = "Exponents between half-space and thin layer"
-    with style.sheet(where, "exponents", title, LAYER_LINES, rows * PANEL, width=TITLE_WIDTH) as sheet:
+    with style.sheet(where, "exponents", title, LAYER_LINES, rows * PANEL) as sheet:
         panels = iter(sheet.panels(rows, 2, 0.075, 0.985, wspace=0.22, hspace=0.34))
         letters = iter("abcdefgh")
         for name in ROWS:
@@ -76,7 +75,6 @@ def plot_layers(curves: Sequence[ExponentCurve], checks: Sequence[Check], where:
         style.label(right, next(letters), "punch: D over the row's")
         for axes in (left, right):
             axes.set(xlabel="contact radius over thickness")
-    return sheet.paths
 
 
 def _exponents(axes: Axes, curves: Sequence[ExponentCurve], checks: Sequence[Check]) -> None:
@@ -141,12 +139,12 @@ def _of_punch(found: Sequence[Any]) -> list[object]:
     return [one for one in found if np.isinf(one.profile.n)]
 
 
-def plot_impacts(found: Sequence[ImpactExponents], where: Path) -> tuple[Path, Path]:
-    """Write ``exponents_from_impacts.svg`` and ``.png`` into the folder ``where``; their paths."""
+def plot_impacts(found: Sequence[ImpactExponents], where: Path) -> None:
+    """Write ``exponents_from_impacts.svg`` and ``.png`` into the folder ``where``."""
     columns = _columns(found)
     title = "Exponents read from impacts on a viscoelastic body"
     height = len(READERS) * BIAS_PANEL
-    with style.sheet(where, "exponents_from_impacts", title, IMPACT_LINES, height, width=TITLE_WIDTH) as sheet:
+    with style.sheet(where, "exponents_from_impacts", title, IMPACT_LINES, height) as sheet:
         panels = sheet.panels(len(READERS), len(columns), 0.08, 0.985, wspace=0.28, hspace=0.3)
         for place, axes in enumerate(panels):
             reader, (name, own) = list(READERS)[place // len(columns)], list(columns.items())[place % len(columns)]
@@ -156,19 +154,15 @@ def plot_impacts(found: Sequence[ImpactExponents], where: Path) -> tuple[Path, P
             axes.set(xlabel="tau/T" if place >= len(panels) - len(columns) else "")
         for axes in panels[: len(columns)]:
             axes.legend(loc="lower right", fontsize=5.6, labelspacing=0.2, handlelength=1.4)
-    return sheet.paths
 
 
 def _columns(found: Sequence[ImpactExponents]) -> Mapping[str, list[ImpactExponents]]:
     """Impacts by what stands above their column: shapes on the half-space, then on layers."""
     columns: dict[str, list[ImpactExponents]] = {}
     for one in sorted(found, key=lambda one: one.impact.wide is not None):
-        columns.setdefault(_column(one.impact.profile, one.impact.wide is not None), []).append(one)
+        body = f"exponent {one.impact.profile.row:g}" if one.impact.wide is None else "layer"
+        columns.setdefault(f"{one.impact.profile.label}, {body}", []).append(one)
     return columns
-
-
-def _column(profile: Profile, on_layer: bool) -> str:
-    return f"{profile.label}, {'layer' if on_layer else f'exponent {profile.row:g}'}"
 
 
 def _biases(axes: Axes, found: Sequence[ImpactExponents], reader: str) -> None:

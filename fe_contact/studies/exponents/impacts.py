@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import product
 from pathlib import Path
@@ -234,6 +234,5 @@ def to_dict(found: Sequence[ImpactExponents]) -> Table:
         "left_by_correction": max(one.left for one in exact),
         "all_corrected_within_bar": all(one.left <= one.corrected.error for one in exact),
         "checks": [{"place": one.impact.named, "agrees": alike, "converged": one.converged,
-                    "read": {name: asdict(reading) for name, reading in one.read.items()},
-                    "corrected": asdict(one.corrected)} for one, alike in agreeing(found)],
+                    "read": one.read, "corrected": one.corrected} for one, alike in agreeing(found)],
     }  # fmt: skip

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -117,13 +117,8 @@ class ReadExponent:
     error: float
 
 
+Reader = Callable[[Samples], ReadExponent]  # one way to read an exponent
 ForceLaw = Callable[[Array], Array]  # of what is free, the exponent first: the columns that the stiffnesses share
-
-
-class Reader(Protocol):
-    """One way to read an exponent."""
-
-    def __call__(self, samples: Samples) -> ReadExponent: ...
 
 
 def log_log(samples: Samples) -> ReadExponent:

@@ -53,11 +53,11 @@ class Pair:
     @property
     def told(self) -> str:
         """One line for a person."""
-        slope, terms = asdict(self.size.slope), self.size.terms
+        slope, terms = self.size.slope, self.size.terms
         formula = f"{terms['c'].value:.4f} {terms['k'].value:+.4f} ln x {terms['d'].value:+.4f} x"
         return (
             f"two spheres, {self.support}, nu = {self.nu:g}: F/F_Hertz - 1 = x ({formula}), x = a/R; "
-            f"slope {slope['value']:.3f} +- {slope['error']:.3f} up to x = {self.size.share.max():.2g}"
+            f"slope {slope.value:.3f} +- {slope.error:.3f} up to x = {self.size.share.max():.2g}"
         )
 
 

@@ -97,7 +97,7 @@ def _deck(case: StaticCase) -> Iterator[str]:
         yield f"*ELEMENT, TYPE=CAX8, ELSET={name}"
         yield from (f"{one}, {', '.join(map(str, nodes))}" for one, nodes in part.elements.items())
     axis = (*pressed.left, *striker.left)
-    yield from _set("*NSET, NSET=AXIS", [one for one in axis if _known(one, pressed, striker)])
+    yield from _set("*NSET, NSET=AXIS", [one for one in axis if one in pressed.nodes or one in striker.nodes])
     yield from _set("*NSET, NSET=BASE", pressed.bottom)
     yield from _set("*NSET, NSET=SIDE", pressed.right)
     yield from _set("*NSET, NSET=STRIKER", striker.top)
@@ -115,10 +115,6 @@ def _deck(case: StaticCase) -> Iterator[str]:
     yield from ("*STEP, INC=200", "*STATIC", "0.1, 1., 1e-4, 0.25")
     yield from ("*BOUNDARY", f"STRIKER, 2, 2, {-MM * case.depth:.12g}", "STRIKER, 1, 1, 0.")
     yield from ("*NODE PRINT, NSET=STRIKER, TOTALS=ONLY", "RF", "*END STEP")
-
-
-def _known(one: int, *parts: Grid) -> bool:
-    return any(one in part.nodes for part in parts)
 
 
 def _set(head: str, ids: Sequence[int]) -> Iterator[str]:

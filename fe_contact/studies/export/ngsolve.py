@@ -46,16 +46,13 @@ def _filled(kind: str, case: StaticCase | ImpactCase, **numbers: object) -> str:
         "NU": body.nu, "EDGE": body.edge, "REACH": body.reach, "HELD": body.held, "BONDED": body.bonded,
     }  # fmt: skip
     lists = {"ACROSS": across, "UP": up, "HEIGHTS": heights}
-    return Template("".join(_part(name) for name in ("body", kind))).substitute(
+    parts = (Path(__file__).parent / f"ngsolve_{name}.txt" for name in ("body", kind))
+    return Template("".join(part.read_text(encoding="utf-8") for part in parts)).substitute(
         {name: ", ".join(f"{float(value):.12g}" for value in values) for name, values in lists.items()},
         NAME=case.name,
         SAID="\n".join(case.said),
         NUMBERS="\n".join(f"{key} = {value!r}" for key, value in given.items()),
     )
-
-
-def _part(name: str) -> str:
-    return (Path(__file__).parent / f"ngsolve_{name}.txt").read_text(encoding="utf-8")
 
 
 MEMBER = NGSolve()

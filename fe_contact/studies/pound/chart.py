@@ -17,17 +17,16 @@ from lumped.pounding.simulation import FramesResult
 from lumped.pounding.study import NO_CONTACT, PoundStudy
 
 PANEL, BETWEEN = 1.45, 0.62  # heights of a panel and of what is between two, in
-TITLE_WIDTH = 130  # characters
 WITHOUT: Look = {"color": style.GREY, "linestyle": (0, (3, 1.5)), "linewidth": 0.9}
 MARKERS = "osD^vP"
 
 
-def plot_study(study: PoundStudy, where: Path, beside: Sequence[str] = ()) -> tuple[Path, Path]:
-    """Write ``pound.svg`` and ``pound.png`` into the folder ``where``; their paths. ``beside``: what else to say."""
+def plot_study(study: PoundStudy, where: Path, beside: Sequence[str] = ()) -> None:
+    """Write ``pound.svg`` and ``pound.png`` into the folder ``where``. ``beside``: what else to say."""
     gaps = list(study.case.frames.gaps)
     rows, lines = 3 if gaps else 2, [*_lines(study), *beside]
     height = PANEL * rows + BETWEEN * (rows - 1)
-    with style.sheet(where, "pound", study.case.name, lines, height, width=TITLE_WIDTH, above=0.38) as sheet:
+    with style.sheet(where, "pound", study.case.name, lines, height, above=0.38) as sheet:
         grid = sheet.grid(rows, 1, 0.085, 0.975, hspace=BETWEEN / PANEL)
         top = sheet.figure.add_subplot(grid[0])
         _storeys(top, study)
@@ -38,7 +37,6 @@ def plot_study(study: PoundStudy, where: Path, beside: Sequence[str] = ()) -> tu
         places = [sheet.figure.add_subplot(below[i]) for i in range(2 * len(sides))]
         for k, axes in enumerate(places):
             _profile(axes, study, sides[k // 2], "drift" if k % 2 == 0 else "acceleration", "abcdef"[rows - 1 + k])
-    return sheet.paths
 
 
 def looks(study: PoundStudy) -> dict[str, Look]:

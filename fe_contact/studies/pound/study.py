@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict
 from pathlib import Path
 
 from fe_contact.studies.files import Line, lines_of, write_study
@@ -101,7 +100,7 @@ def _gap(result: FramesResult, gap: str) -> Table:
 
 def _storeys(result: FramesResult) -> Table:
     """The peaks of every storey by its name."""
-    return {name: asdict(peaks) for name, peaks in zip(result.frames.storeys, result.peaks, strict=True)}
+    return dict(zip(result.frames.storeys, result.peaks, strict=True))
 
 
 def _columns(result: FramesResult) -> Iterator[tuple[str, object]]:

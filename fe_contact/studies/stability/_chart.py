@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import TwoSlopeNorm
-from matplotlib.figure import Figure
 
 from fe_contact.settings import Given
 from fe_contact.studies import style
@@ -22,8 +20,9 @@ CELL, LETTER = 0.16, 0.062  # height of a row, width of a letter of its name, in
 UPRIGHT = 0.085  # width of a column's name that stands upright, in
 TALLEST = 9.0  # panels that are taller together stand beside each other, in
 BESIDE, LINE = 0.12, 0.13  # between them; height of a line of their titles, in
+RIGHT = 0.985  # their right end, in shares of the width
 DECADES = 2.0  # either side of the limit that the colours span
-TITLE_WIDTH, INDENT = 132, 3  # look: characters; of a panel's letter before its title
+INDENT = 3  # look: characters of a panel's letter before its title
 FEW = 4  # columns, in whose cells there is room for numbers
 NOT_ASKED = "0.9"
 LINES = [
@@ -32,75 +31,38 @@ LINES = [
 ]
 
 
-def plot_stability(rows: Sequence[Row], where: Path) -> list[Path]:
-    """Write ``<study>.svg`` and ``.png`` of every study that has rows into the folder ``where``; their paths."""
-    found = list[Path]()
+def plot_stability(rows: Sequence[Row], where: Path) -> None:
+    """Write ``<study>.svg`` and ``.png`` of every study that has rows into the folder ``where``."""
     for study in dict.fromkeys(row["study"] for row in rows):
-        own = [row for row in rows if row["study"] == study]
-        member = studies()[study]
-        with style.look():
-            figure = _map(own, member.title, member.chart)
-            found += style.save(figure, where, study)
-    return found
+        _plot(study, [row for row in rows if row["study"] == study], where)
 
 
-@dataclass(frozen=True)
-class _Layout:
-    """Where panels stand, in inches: ``across`` of them in a row, each ``wide`` and ``tall``, ``left`` of the first.
-
-    ``above``: room for heading and title; ``title``: height of a panel's title; ``below``: of the names of columns.
-    """
-
-    count: int
-    across: int
-    left: float
-    wide: float
-    tall: float
-    above: float
-    title: float
-    below: float
-
-    @classmethod
-    def of(cls, chart: Chart, names: Sequence[str], columns: Sequence[str]) -> _Layout:
-        """For rows and columns of these names."""
-        count, tall = len(chart.measures), CELL * len(names)
-        across = min(math.ceil(count * tall / TALLEST), count)
-        left = 0.3 + LETTER * max(map(len, names))
-        wide = (0.985 * style.PAGE - left - (across - 1) * BESIDE) / across
-        below = 0.3 if len(columns) <= FEW else 0.2 + LETTER * max(map(len, columns))
-        lines = max(len(_wrapped(measure, wide)) for measure in chart.measures.values())
-        above = style.heading_height(LINES, TITLE_WIDTH) - 0.05
-        return cls(count, across, left, wide, tall, above, 0.22 + LINE * lines, below)
-
-    @property
-    def height(self) -> float:
-        """Of the figure."""
-        return self.above + -(-self.count // self.across) * (self.tall + self.title) + self.below
-
-    def box(self, place: int) -> tuple[float, float, float, float]:
-        """Of a panel, in shares of the figure."""
-        down, along = divmod(place, self.across)
-        left = self.left + along * (self.wide + BESIDE)
-        bottom = self.height - self.above - (down + 1) * (self.tall + self.title)
-        return left / style.PAGE, bottom / self.height, self.wide / style.PAGE, self.tall / self.height
-
-
-def _map(rows: Sequence[Row], title: str, chart: Chart) -> Figure:
+def _plot(study: str, rows: Sequence[Row], where: Path) -> None:
+    """The map of one study: as many panels beside each other as would be too tall together."""
+    title, chart = studies()[study].title, studies()[study].chart
     names, columns = _labels(rows, chart.rows), _labels(rows, chart.columns)
-    layout = _Layout.of(chart, names, columns)
-    figure = Figure(figsize=(style.PAGE, layout.height))
-    for place, (name, measure) in enumerate(chart.measures.items()):
-        axes = figure.add_axes(layout.box(place))
-        _panel(axes, _table(rows, chart, names, columns, name), measure)
-        style.label(axes, "abcdefgh"[place], "\n".join(_wrapped(measure, layout.wide)).lstrip())
-        axes.set_yticks(range(len(names)), [""] * len(names) if place % layout.across else names, fontsize=5.6)
-        last = place + layout.across >= layout.count
-        rotation = 0 if len(columns) <= FEW else 90
-        every = 1 if len(columns) <= FEW else math.ceil(UPRIGHT * len(columns) / layout.wide)  # as many as have room
-        shown = [one if last and not number % every else "" for number, one in enumerate(columns)]
-        axes.set_xticks(range(len(columns)), shown, rotation=rotation, fontsize=5.6)
-    style.heading(figure, title, LINES, TITLE_WIDTH)
-    return figure
+    count, tall, few = len(chart.measures), CELL * len(names), len(columns) <= FEW
+    across = min(math.ceil(count * tall / TALLEST), count)
+    down = math.ceil(count / across)
+    left = 0.3 + LETTER * max(map(len, names))
+    wide = (RIGHT * style.PAGE - left - (across - 1) * BESIDE) / across
+    titles = [_wrapped(measure, wide) for measure in chart.measures.values()]
+    between = 0.22 + LINE * max(map(len, titles))
+    below = 0.3 if few else 0.2 + LETTER * max(map(len, columns))
+    every = 1 if few else math.ceil(UPRIGHT * len(columns) / wide)  # as many columns have names as have room
+    height, above = down * tall + (down - 1) * between, between - 0.05
+    with style.sheet(where, study, title, LINES, height, above=above, below=below) as sheet:
+        gaps = {"wspace": BESIDE / wide, "hspace": between / tall}
+        panels = sheet.panels(down, across, left / style.PAGE, RIGHT, **gaps)
+        for place, (axes, name) in enumerate(zip(panels, chart.measures, strict=False)):
+            _panel(axes, _table(rows, chart, names, columns, name), chart.measures[name])
+            style.label(axes, "abcdefgh"[place], "\n".join(titles[place]).lstrip())
+            axes.set_yticks(range(len(names)), [""] * len(names) if place % across else names, fontsize=5.6)
+            last = place + across >= count
+            shown = [one if last and not number % every else "" for number, one in enumerate(columns)]
+            axes.set_xticks(range(len(columns)), shown, rotation=0 if few else 90, fontsize=5.6)
+        for axes in panels[count:]:
+            axes.set_axis_off()
 
 
 def _wrapped(measure: Measure, width: float) -> list[str]:

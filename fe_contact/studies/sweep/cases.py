@@ -20,10 +20,10 @@ from fe_contact.settings import Given
 from lumped.errors import BadInput, Fault, shown
 from lumped.numbers import Array
 from lumped.scene.scene import Scene
-from lumped.scene.tables import Known, SceneReader
+from lumped.scene.tables import Known, SceneReader, TableReader
 from lumped.schema import Table
 from lumped.schema.files import SCENES, exists, overridden, parsed
-from lumped.schema.keys import Count, File, Key, Number, Text, read_table
+from lumped.schema.keys import Count, File, Key, Number, Text
 
 MOST_CASES = 10_000_000  # work: days on a hundred processes
 MOST_VALUES = 1_000_000  # work: of all keys together, for they are held
@@ -184,16 +184,12 @@ def _flat(table: Given, path: str = "") -> dict[str, object]:
     return found
 
 
-class _Reader:
-    """Walks the tables of a sweep file once and keeps every fault."""
-
-    def __init__(self, source: str, raw: Table, folder: Path) -> None:
-        self.source, self.raw, self.folder = source, raw, folder
-        self.faults: list[Fault] = []
-        self.held = 0  # values of ranges and draws
+class _Reader(TableReader):
+    TABLES = ("axes", "zipped", "draws")
+    held = 0  # values of ranges and draws
 
     def sweep(self) -> Sweep:
-        values, self.faults = read_table(self.source, "", self.raw, KEYS)
+        values = self.checked("", self.raw, KEYS)
         axes, base = self.axes(values), self.base(values.get("scene"))
         if base is None:
             raise BadInput(self.faults)
@@ -248,8 +244,7 @@ class _Reader:
         """So many values between two ends."""
         ends = self.pair(f"{where}.{kind}", spec[kind], above_zero=kind == "log")
         count, known = Count(1, MOST_VALUES), len(self.faults)
-        values, faults = read_table(self.source, where, {"count": spec["count"]}, {"count": Key(count)})
-        self.faults += faults
+        values = self.checked(where, {"count": spec["count"]}, {"count": Key(count)})
         if ends is None or len(self.faults) > known or not self.holds(where, values["count"]):
             return ()
         return tuple(float(f"{value:.{DIGITS}g}") for value in RANGES[kind](*ends, values["count"]).tolist())
@@ -275,8 +270,7 @@ class _Reader:
     def draws(self, table: Given) -> list[Axis]:
         """One axis of all drawn keys: as many places as are drawn."""
         given = {name: table[name] for name in DRAW_KEYS if name in table}
-        values, faults = read_table(self.source, "draws", given, DRAW_KEYS)
-        self.faults += faults
+        values = self.checked("draws", given, DRAW_KEYS)
         specs = {key: spec for key, spec in table.items() if key not in (*DRAW_KEYS, "correlation")}
         kinds = {key: self.transform(f"draws.{key}", spec) for key, spec in specs.items()}
         roots = self.correlation(table.get("correlation", []), list(kinds))

@@ -19,7 +19,7 @@ from lumped.result.result import UNITS
 
 QUANTITIES = ("peak_force", "peak_depth", "duration", "restitution")
 MAPPED = ("restitution", "peak_force")
-NAME, WIDTH = "sweep", 130  # of the files; characters in a line of the heading
+NAME = "sweep"  # of the files
 INSIDE = 0.48  # look: of a map's width and height from its middle, where a number is not cut by the frame
 EVEN = 1e-6  # rounding: of steps between values that were spaced evenly
 LEVELS, BINS = 9, 24  # look: lines of a map at most; bars of a histogram at most
@@ -89,7 +89,7 @@ def _curves(table: SweepTable, numbers: list[str], where: Path) -> tuple[Path, .
     text = ["Bands: error bars. Answers that did not converge, or were refused, are left out. SI units."]
     unknown = [name for name, converged in zip(sweep.methods, table.converged.T, strict=True) if not converged.any()]
     text += [f"Without an answer: {', '.join(unknown)}."] if unknown else []
-    with style.sheet(where, NAME, _title(sweep), text, 3.9, width=WIDTH) as sheet:
+    with style.sheet(where, NAME, _title(sweep), text, 3.9) as sheet:
         for place, axes in enumerate(sheet.panels(2, 2, 0.075, 0.985, wspace=0.24, hspace=0.34)):
             _panel(axes, table, key, QUANTITIES[place])
             style.label(axes, "abcd"[place], QUANTITIES[place].replace("_", " "))
@@ -124,7 +124,7 @@ def _maps(table: SweepTable, numbers: list[str], where: Path) -> tuple[Path, ...
     """Two quantities over two keys, by the first method: the first key upwards, the second to the right."""
     sweep, method = table.sweep, table.sweep.methods[0]
     text = [f"By the method {method}. White: an answer did not converge, or was refused. SI units."]
-    with style.sheet(where, NAME, _title(sweep), text, 2.7, width=WIDTH) as sheet:
+    with style.sheet(where, NAME, _title(sweep), text, 2.7) as sheet:
         for place, axes in enumerate(sheet.panels(1, 2, 0.1, 0.965, wspace=0.34)):
             _map(axes, table, numbers, MAPPED[place])
             style.label(axes, "ab"[place], _scale(MAPPED[place], _column(table, MAPPED[place], 0, table.values))[1])
@@ -175,7 +175,7 @@ def _scatter(table: SweepTable, numbers: list[str], where: Path) -> tuple[Path, 
     height = 0.18 * len(keys) * len(table.sweep.methods) + 0.25
     methods = len(table.sweep.methods)
     above = ABOVE + (ROW * math.ceil(methods / NAMES) if methods > 1 else 0.0)
-    with style.sheet(where, NAME, _title(table.sweep), text, 2.1 + height, width=WIDTH, above=above) as sheet:
+    with style.sheet(where, NAME, _title(table.sweep), text, 2.1 + height, above=above) as sheet:
         look: Look = {"wspace": 0.16, "hspace": 0.95 / (1.0 + height), "height_ratios": [1.55, height]}
         panels = sheet.panels(2, len(QUANTITIES), left, 0.985, **look)
         for place, quantity in enumerate(QUANTITIES):

@@ -16,7 +16,6 @@ from fe_contact.studies.table1.verdict import verdict
 from lumped.result.result import Quantity
 
 PANEL = 2.55  # height of a panel, in
-TITLE_WIDTH = 132  # characters
 SHIFT = 0.2  # of the points of one row, nu by nu
 MARKERS = ("o", "s", "D", "^", "v", "P", "X", "h")
 SUPPORTS = {
@@ -33,7 +32,7 @@ def plot_table1(trials: Sequence[Trial], where: Path) -> tuple[Path, Path]:
     """Write ``table1.svg`` and ``table1.png`` into the folder ``where``; their paths."""
     judged = [(trial.row, verdict(trial)) for trial in trials]
     lines = [f"{row.number}  {row.case}: {one.word}: {one.sentence}" for row, one in judged]
-    with style.sheet(where, "table1", "Table 1 on trial", lines, 3 * PANEL, width=TITLE_WIDTH) as sheet:
+    with style.sheet(where, "table1", "Table 1 on trial", lines, 3 * PANEL) as sheet:
         grid = sheet.grid(3, 2, 0.075, 0.985, wspace=0.24, hspace=0.42)
         places = [grid[place // 2, place % 2] for place in range(4)]
         panels = [sheet.figure.add_subplot(place) for place in (*places, grid[2, :])]

@@ -15,7 +15,7 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.indentation import indent
-from fe_contact.studies.finite_exponents import first_beyond
+from fe_contact.studies.finite_exponents import first_beyond, zero_after
 from lumped.indentation import Indentation, power_law
 from lumped.load_curves.half_plane import HalfPlane
 from lumped.load_curves.layer import LineLayer, PointLayer
@@ -118,14 +118,9 @@ def within(row: TableRow, tried: Sequence[Block], limit: float) -> tuple[float, 
     if not holding.size:
         return None
     first, last = int(holding[0]), int(holding[-1])
-    low = 0.0 if first == 0 else math.exp(_crossing(width, off, first - 1))
-    high = math.inf if last == width.size - 1 else math.exp(_crossing(width, off, last))
+    low = 0.0 if first == 0 else math.exp(zero_after(width, off, first - 1))
+    high = math.inf if last == width.size - 1 else math.exp(zero_after(width, off, last))
     return low, high
-
-
-def _crossing(x: Array, y: Array, place: int) -> float:
-    """Where the line from one point to the next meets zero."""
-    return float(x[place] - y[place] * (x[place + 1] - x[place]) / (y[place + 1] - y[place]))
 
 
 @dataclass(frozen=True)

@@ -232,27 +232,26 @@ def _described(trial: Trial) -> Table:
         "corrected": {"D": row.corrected[0], "E*": row.corrected[1], "alpha": row.alpha if row.single else None},
         "validity": row.validity,
         "correction": row.correction or None,
-        "alpha": None if trial.alpha is None else asdict(trial.alpha),
-        "D": None if trial.factor is None else asdict(trial.factor),
+        "alpha": trial.alpha,
+        "D": trial.factor,
         "E*": [_modulus(trial, nu, found) for nu, found in trial.moduli.items()],
         "impact": None if trial.impact is None else _from_impact(trial.impact),
         "reach": None if reach is None else _reach(trial),
-        "datum": [asdict(place) for place in trial.datum],
+        "datum": trial.datum,
         "datum_depth_over_radius": DEPTH if trial.datum else None,
         "bonded": [
             {"nu": block.body.nu, "radius_over_thickness": block.width, **asdict(block.modulus)}
             for block in trial.bonded
         ],
-        "deviations": {name: asdict(one) for name, one in deviations(trial).items()},
-        "verdict": asdict(verdict(trial)),
+        "deviations": deviations(trial),
+        "verdict": verdict(trial),
         "failure": trial.failure or None,
     }
 
 
 def _from_impact(found: FromImpact) -> Table:
     moduli = [{"nu": nu, **asdict(modulus)} for nu, modulus in found.moduli.items()]
-    single = {name: None if one is None else asdict(one) for name, one in (("alpha", found.alpha), ("D", found.factor))}
-    return {**single, "E*": moduli}
+    return {"alpha": found.alpha, "D": found.factor, "E*": moduli}
 
 
 def _modulus(trial: Trial, nu: float, found: Quantity) -> Table:
@@ -264,8 +263,8 @@ def _modulus(trial: Trial, nu: float, found: Quantity) -> Table:
 def _reach(trial: Trial) -> Table:
     reach = trial.reach
     assert reach is not None
-    curve = {"depth": reach.depth.tolist(), "departure": reach.departure.tolist()}
-    ends = {"first": reach.first, "last": reach.last, "held": asdict(reach.held), "throughout": reach.throughout}
+    ends = {"first": reach.first, "last": reach.last, "held": reach.held, "throughout": reach.throughout}
+    curve = {"depth": reach.depth, "departure": reach.departure}
     return {"length": trial.row.length_name or "m", **ends, **curve}
 
 

@@ -27,7 +27,6 @@ from fe_contact.studies.tradeoff.tried import ROW
 from fe_contact.studies.tradeoff.verdict import Measure, finite_elements, front, judged, known_to
 
 PANELS = 3.9  # height of the panels, in
-TITLE_WIDTH = 130  # characters
 LEAST, MOST = 1e-9, 1.0  # what lies beyond is drawn at the ends of the error axis
 COLUMNS, ROW_HEIGHT = 4, 0.185  # of the legend; height of a row, in
 FEW_DECADES = 1.5  # of an axis below which powers of ten are too few ticks
@@ -59,8 +58,8 @@ def plot_tradeoff(found: Tradeoff, where: Path) -> tuple[Path, Path]:
         *(_sign(**look) for look in {look["label"]: look for look in laws.values()}.values()),
     ]
     title = f"What accuracy costs: {scene.name}"
-    room = {"above": 0.3, "below": 0.61 + ROW_HEIGHT * -(-len(legend) // COLUMNS)}
-    with style.sheet(where, "tradeoff", title, lines, PANELS, width=TITLE_WIDTH, **room) as sheet:
+    below = 0.61 + ROW_HEIGHT * -(-len(legend) // COLUMNS)
+    with style.sheet(where, "tradeoff", title, lines, PANELS, above=0.3, below=below) as sheet:
         if finite_elements(points):
             left, right = sheet.panels(1, 2, 0.082, 0.985, wspace=0.24, width_ratios=(1.3, 1.0))
             _counted(right, points, signs)
@@ -75,20 +74,17 @@ def plot_tradeoff(found: Tradeoff, where: Path) -> tuple[Path, Path]:
     return sheet.paths
 
 
-def plot_work(found: Tradeoff, lines: list[str], where: Path) -> tuple[Path, Path]:
+def plot_work(found: Tradeoff, lines: list[str], where: Path) -> None:
     """Write ``work.svg`` and ``work.png`` into ``where``, finite elements over counted work alone: the same on every
-    machine; their paths.
+    machine.
     """
     signs = Signs.of(found.points)
-    with style.sheet(
-        where, "work", f"What accuracy costs: {found.scene.name}", lines, PANELS, width=TITLE_WIDTH
-    ) as sheet:
+    with style.sheet(where, "work", f"What accuracy costs: {found.scene.name}", lines, PANELS) as sheet:
         (axes,) = sheet.panels(1, 1, 0.082, 0.68)
         _counted(axes, found.points, signs)
         axes.set_ylabel(ERROR)
         legend = [sign for sign in signs.legend(found.points) if sign.get_label() != ALL_METHODS]
         axes.legend(handles=legend, loc="upper left", bbox_to_anchor=(1.03, 1.0), labelspacing=0.8)
-    return sheet.paths
 
 
 def _counted(axes: Axes, points: Sequence[Point], signs: Signs) -> None:

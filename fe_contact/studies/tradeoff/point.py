@@ -53,14 +53,6 @@ def errors_of(exact: Mapping[str, float | None], values: Given) -> dict[str, flo
     return found
 
 
-def values_of(result: Result) -> dict[str, float | None]:
-    """The quantities without their bars."""
-    return {name: quantity.value for name, quantity in result.quantities.items()}
-
-
-NONE: Array = np.zeros(0)
-
-
 @dataclass(frozen=True, eq=False)
 class Answer:
     """What a run gives: its settings, quantities by name, the largest of their bars, counted work, and the force.
@@ -72,8 +64,8 @@ class Answer:
     values: Mapping[str, float | None]
     bar: float | None
     work: Mapping[str, float]
-    time: Array = field(default_factory=NONE.copy)
-    force: Array = field(default_factory=NONE.copy)
+    time: Array = field(default_factory=lambda: np.zeros(0))
+    force: Array = field(default_factory=lambda: np.zeros(0))
 
     @classmethod
     def of(cls, result: Result, **counted: float) -> Answer:
@@ -83,8 +75,9 @@ class Answer:
         work, history = {**result.work, **counted}, result.history
         first = (result.contacts[0]["duration"] if result.contacts else None) or np.inf
         rows = history.time <= first * (1.0 + ROUNDING)
+        values = {name: quantity.value for name, quantity in result.quantities.items()}
         bar = largest_bar(result.quantities)
-        return cls(result.numerics, values_of(result), bar, work, history.time[rows], history.force[rows])
+        return cls(result.numerics, values, bar, work, history.time[rows], history.force[rows])
 
     def force_at(self, time: Array) -> Array:
         """Force at other times, N: linear between the rows, zero outside them; a force that is cut off ends there."""

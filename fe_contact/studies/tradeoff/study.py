@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
@@ -69,18 +69,16 @@ class Attempt:
         return self.answer
 
 
+# Measures calls by their names, or takes what is kept of them.
+Attempts = Callable[[dict[str, partial[Attempt]]], dict[str, Attempt]]
+
+
 class Tried(NamedTuple):
     """Settings of finite elements, what came of them, and the tolerance for which they are the plan's, if for one."""
 
     settings: Given
     attempt: Attempt
     default_for: float | None = None
-
-
-class Attempts(Protocol):
-    """Measures calls by their names, or takes what is kept of them."""
-
-    def __call__(self, calls: dict[str, partial[Attempt]], /) -> dict[str, Attempt]: ...
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,7 +28,6 @@ from lumped.shapes import SHAPES
 from lumped.targets import TARGETS
 
 COLUMNS, PANEL, BETWEEN = 2, 1.75, 0.62  # panels in a row; height of one and of what is between two, in
-TITLE_WIDTH = 128  # characters
 LINEAR = 1.0  # %, up to which the axis is linear: the finest level a law may be asked for
 MOST = 300.0  # %, what lies beyond is drawn at the end of the axis
 TICKS = (-100.0, -10.0, -1.0, 0.0, 1.0, 10.0, 100.0)  # look: %
@@ -56,7 +55,7 @@ def _plot(study: TransferStudy, key: str, where: Path, name: str) -> tuple[Path,
     count = -(-(len(QUANTITIES) + 1) // COLUMNS)
     height = count * PANEL + (count - 1) * BETWEEN
     title = f"{study.name}: laws used at another {key}"
-    with style.sheet(where, name, title, lines, height, width=TITLE_WIDTH, above=0.3) as sheet:
+    with style.sheet(where, name, title, lines, height, above=0.3) as sheet:
         panels = sheet.panels(count, COLUMNS, 0.078, 0.845, wspace=0.74, hspace=BETWEEN / PANEL)
         for i, (axes, quantity) in enumerate(zip(panels, QUANTITIES, strict=False)):
             _deviations(axes, [row for row in rows if row.quantity == quantity])

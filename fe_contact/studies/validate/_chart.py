@@ -15,7 +15,7 @@ from matplotlib.ticker import MaxNLocator
 
 from fe_contact.assembly.forms import Array
 from fe_contact.studies import style
-from fe_contact.studies.validate._scenes import SceneAnswer
+from fe_contact.studies.references import Move
 
 ROW, LEAST = 0.165, 1e-4  # look: height of a scene's row, in; the smallest ratio that is drawn
 SIGNS = {
@@ -37,32 +37,28 @@ SHOWN = {
 }
 
 
-def plot_scenes(found: Sequence[SceneAnswer], where: Path) -> tuple[Path, Path]:
-    """Write ``scenes.svg`` and ``scenes.png`` into the folder ``where``; their paths."""
-    held = [one for one in found if one.differences]
+def plot_scenes(held: Mapping[str, Sequence[Move]], where: Path) -> None:
+    """Write ``scenes.svg`` and ``scenes.png`` into ``where``; ``held``: differences by what was held against what."""
     lines = ["Difference from the exact answer over the sum of both error bars; left of the line both can be true."]
-    with style.sheet(
-        where, "scenes", "Error over its bar", lines, ROW * max(len(held), 3), width=120, above=0.08
-    ) as sheet:
+    with style.sheet(where, "scenes", "Error over its bar", lines, ROW * max(len(held), 3), above=0.08) as sheet:
         axes = sheet.panels(1, 1, LABELS, 1.0 - LEGEND / style.PAGE)[0]
         axes.axvspan(LEAST, 1.0, color=style.GREEN, alpha=0.07, linewidth=0.0)
         axes.axvline(1.0, color=style.BLACK, linewidth=0.9)
         for name, (marker, colour) in SIGNS.items():
-            points = [(move.moved, place) for place, one in enumerate(held) for move in one.differences
+            points = [(move.moved, place) for place, moves in enumerate(held.values()) for move in moves
                       if move.quantity == name and move.moved is not None]  # fmt: skip
             x, y = [max(moved, LEAST) for moved, _ in points], [place for _, place in points]
             axes.plot(x, y, marker, color=colour, markersize=3.4, label=NAMES.get(name, name.replace("_", " ")))
         axes.set(xscale="log", xlim=(LEAST, 3.0), ylim=(len(held) - 0.4, -0.6), xlabel="error over its bar")
-        axes.set_yticks(range(len(held)), [f"{one.scene}  ({one.exact.replace('_', ' ')})" for one in held])
+        axes.set_yticks(range(len(held)), [*held])
         axes.grid(axis="y", color=style.GREY, linewidth=0.3, alpha=0.4)
         axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
-    return sheet.paths
 
 
 def plot_correspondence(
     R1: Array, R2: Array, off: Mapping[str, Array], places: tuple[Array, Array, Array], where: Path
-) -> tuple[Path, Path]:
-    """Write ``correspondence.svg`` and ``.png`` into ``where``; their paths.
+) -> None:
+    """Write ``correspondence.svg`` and ``.png`` into ``where``.
 
     ``R1``, ``R2``, s, and what is ``off`` by quantity: (cases,); ``places``: R1, R2 and finite elements' error over
     both bars, (places,).
@@ -71,7 +67,7 @@ def plot_correspondence(
         "The correspondence principle, cut at zero force, against Ting's exact law. Dots: finite elements agree with "
         "the exact law within both bars; crosses: they do not."
     ]
-    with style.sheet(where, "correspondence", "The paper's law in the rebound", lines, MAP, width=125) as sheet:
+    with style.sheet(where, "correspondence", "The paper's law in the rebound", lines, MAP) as sheet:
         for place, axes in enumerate(sheet.panels(1, 2, 0.075, 0.985, wspace=0.2)):
             name = list(SHOWN)[place]
             factor, title = SHOWN[name]
@@ -81,7 +77,6 @@ def plot_correspondence(
                           markerfacecolor=style.SKY, markeredgewidth=0.7, clip_on=False)  # fmt: skip
             axes.set(xlabel="R2, µs", ylabel="" if place else "R1")
             style.label(axes, "ab"[place], title)
-    return sheet.paths
 
 
 def _map(axes: Axes, R1: Array, R2: Array, values: Array) -> None:

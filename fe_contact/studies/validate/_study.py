@@ -145,7 +145,8 @@ def _made(name: str, part: ReportPart, request: Request) -> Chapter:
         content = {"schema": SECTION_SCHEMA, "section": encoded(made.section)}
 
         def write(where: Path) -> None:
-            made.write(where)
+            for writer in made.writers:
+                writer(where)
             write_json(where / ASKED, _question(request.quick))
             write_json(where / SECTION, plain(content))
 

@@ -75,6 +75,11 @@ class Column:
     error: str = ""
 
 
+def columns(*keys: str) -> tuple[Column, ...]:
+    """Columns without a bar, labelled as their keys say."""
+    return tuple(Column(key, key.replace("_", " ")) for key in keys)
+
+
 @dataclass(frozen=True)
 class Listing:
     """A table of the page: columns of a CSV file, and of its rows those whose column ``only[0]`` holds ``only[1]``."""
@@ -104,10 +109,10 @@ class Section:
 
 @dataclass(frozen=True)
 class Made:
-    """A section, and what writes the files that it names into a folder."""
+    """A section, and what writes the files that it names into a folder, one after the other."""
 
     section: Section
-    write: Callable[[Path], object]
+    writers: tuple[Callable[[Path], object], ...]
 
 
 @dataclass(frozen=True)
@@ -115,7 +120,8 @@ class ReportPart:
     """A member of this folder: its ``rank`` on the page, what it asks, and what answers; ``command`` makes the same
     files without the report, ``quick`` is what a quick answer leaves out; ``seconds``: of one core, for a full one.
 
-    ``make`` raises named failures: the page shows them in the section's place.
+    ``make`` raises named failures: the page shows them in the section's place. It imports a chart, and matplotlib with
+    it, when the study has its rows.
     """
 
     rank: int

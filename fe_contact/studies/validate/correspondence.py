@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -17,19 +18,8 @@ from fe_contact.studies.files import Line, lines_of, write_study
 from fe_contact.studies.sweep.cases import load
 from fe_contact.studies.sweep.study import run
 from fe_contact.studies.sweep.table import SweepTable
-from fe_contact.studies.validate.base import (
-    DIFFERS,
-    HOLDS,
-    Column,
-    Figure,
-    Headline,
-    Listing,
-    Made,
-    ReportPart,
-    Request,
-    Section,
-    Worst,
-)
+from fe_contact.studies.validate import base
+from fe_contact.studies.validate.base import Column
 from lumped.result.result import UNITS
 
 SCHEMA = "fe-contact/validate-correspondence/1"
@@ -78,7 +68,7 @@ def _column(name: str) -> int:
     return list(UNITS).index(name)
 
 
-def make(asked: Request) -> Made:
+def make(asked: base.Request) -> base.Made:
     """Both laws over the plane, finite elements at some places."""
     laws = _swept(asked, "laws", FEW_POINTS if asked.quick else POINTS, [EXACT, LAW], LAW_TOLERANCE)
     places = _swept(asked, "places", FEW_PLACES if asked.quick else PLACES, ["fe", EXACT], TOLERANCE)
@@ -88,12 +78,12 @@ def make(asked: Request) -> Made:
     place = (
         f"{HELD[quantity].replace('_', ' ')} of the steel ball with {found.place(places, int(case))} against {EXACT}"
     )
-    worst = Worst(float(ratios[case, quantity]), int(np.isfinite(ratios).sum()), place)
-    section = Section((headline(found),), tuple(sentences(found)), (FIGURE,), (LISTING,), worst, missed=missed)
-    return Made(section, lambda where: write(found, where))
+    worst = base.Worst(float(ratios[case, quantity]), int(np.isfinite(ratios).sum()), place)
+    section = base.Section((headline(found),), tuple(sentences(found)), (FIGURE,), (LISTING,), worst, missed=missed)
+    return base.Made(section, (partial(write, found),))
 
 
-def _swept(asked: Request, name: str, counts: tuple[int, int], methods: list[str], tolerance: float) -> SweepTable:
+def _swept(asked: base.Request, name: str, counts: tuple[int, int], methods: list[str], tolerance: float) -> SweepTable:
     axes = {
         key: {"log": [*ends], "count": count}
         for key, ends, count in zip((R1, R2), (STIFFER, SLOWER), counts, strict=True)
@@ -102,7 +92,7 @@ def _swept(asked: Request, name: str, counts: tuple[int, int], methods: list[str
     return run(sweep, asked.where / name, asked.jobs, None, True, asked.progress)
 
 
-def headline(found: CorrespondenceMap) -> Headline:
+def headline(found: CorrespondenceMap) -> base.Headline:
     """How far the paper's law is off, and with which of both finite elements agree."""
     off, slow, agreeing = found.off("restitution"), found.off("duration"), found.agreeing
     said = (
@@ -110,7 +100,7 @@ def headline(found: CorrespondenceMap) -> Headline:
         f"{100.0 * _most(slow):+.2g} %, over {off.size} pairs of R1 and R2; finite elements agree with Ting's exact "
         f"answer at {int(agreeing.sum())} of {agreeing.size} places."
     )
-    return Headline(DIFFERS if abs(_most(off)) > TOLERANCE or not agreeing.all() else HOLDS, said)
+    return base.Headline(base.DIFFERS if abs(_most(off)) > TOLERANCE or not agreeing.all() else base.HOLDS, said)
 
 
 def _most(values: Array) -> float:
@@ -169,12 +159,12 @@ def write(found: CorrespondenceMap, where: Path) -> None:
     )
 
 
-FIGURE = Figure(
+FIGURE = base.Figure(
     "correspondence",
     "The paper's law less the exact one, over R1 and R2 of its steel ball; dots: finite elements agree with the exact",
     ("correspondence.csv", "elements.csv"),
 )
-LISTING = Listing(
+LISTING = base.Listing(
     "elements.csv",
     "Finite elements against the exact law",
     (
@@ -189,7 +179,7 @@ LISTING = Listing(
         Column("error_over_bar", "error over bar"),
     ),
 )
-MEMBER = ReportPart(
+MEMBER = base.ReportPart(
     rank=50,
     title="Correspondence maps",
     question="Where is the paper's viscoelastic law exact, and how far is it off in the rebound?",

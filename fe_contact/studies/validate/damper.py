@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from functools import partial
 
 from fe_contact.studies.ptmd import assumption, told, write_ptmd
-from fe_contact.studies.validate.base import Column, Figure, Listing, Made, ReportPart, Request, Section
+from fe_contact.studies.validate import base
+from fe_contact.studies.validate.base import Column
 from lumped.ptmd.case_file import load
 from lumped.ptmd.study import study
 
 CAPTION = "Figure 14 again: the structure alone, with a damper, and with one that pounds on a ring"
-FIGURES = (Figure("ptmd", CAPTION, ("ptmd.csv", "contacts.csv")),)
+FIGURES = (base.Figure("ptmd", CAPTION, ("ptmd.csv", "contacts.csv")),)
 LISTINGS = (
-    Listing(
+    base.Listing(
         "contacts.csv",
         "Contacts of damper and ring",
         (
@@ -26,22 +27,17 @@ LISTINGS = (
 )
 
 
-def make(asked: Request) -> Made:
+def make(asked: base.Request) -> base.Made:
     """Follow the structure with and without damper and ring."""
     found = study(load(), asked.progress)
+    from fe_contact.studies.ptmd_chart import plot_study
+
     doubted = () if found.model_sufficient else (assumption(found),)
-    said = Section((), (*told(found), *doubted), FIGURES, LISTINGS, missed=found.convergence.message)
-
-    def write(where: Path) -> None:
-        from fe_contact.studies.ptmd_chart import plot_study
-
-        write_ptmd(found, where)
-        plot_study(found, where)
-
-    return Made(said, write)
+    said = base.Section((), (*told(found), *doubted), FIGURES, LISTINGS, missed=found.convergence.message)
+    return base.Made(said, (partial(write_ptmd, found), partial(plot_study, found)))
 
 
-MEMBER = ReportPart(
+MEMBER = base.ReportPart(
     rank=75,
     title="The paper's damper",
     question="What does a damper that pounds on a ring do to a structure's free vibration?",

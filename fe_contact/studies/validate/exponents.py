@@ -3,40 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from pathlib import Path
+from functools import partial
 
 from fe_contact.studies.exponents.impacts import sentences
 from fe_contact.studies.exponents.impacts import to_dict as of_impacts
 from fe_contact.studies.exponents.layers import Check, named
 from fe_contact.studies.exponents.study import Exponents, study
-from fe_contact.studies.validate.base import (
-    DIFFERS,
-    VERIFIED,
-    Column,
-    Figure,
-    Headline,
-    Listing,
-    Made,
-    ReportPart,
-    Request,
-    Section,
-    Worst,
-)
+from fe_contact.studies.validate import base
+from fe_contact.studies.validate.base import Column, columns
 
 ROUNDING = 1e-9  # rounding: of an exponent, and of D over the row's
 FIGURES = (
-    Figure("exponents", "Local exponent and D from the half-space to the thin layer, exact and by finite elements",
+    base.Figure("exponents", "Local exponent and D from the half-space to the thin layer, exact and by finite elements",
            ("exponents.csv", "finite_spheres.csv")),
-    Figure("exponents_from_impacts", "Exponents read from impacts on viscoelastic bodies, and how wrong they are",
+    base.Figure("exponents_from_impacts", "Exponents read from impacts on viscoelastic bodies, and how wrong they are",
            ("exponents_from_impacts.csv",)),
 )  # fmt: skip
-LISTING = Listing(
+LISTING = base.Listing(
     "exponents.csv",
     "By finite elements",
     (
-        Column("shape", "shape"),
-        Column("profile_exponent", "profile exponent"),
-        Column("base", "base"),
+        *columns("shape", "profile_exponent", "base"),
         Column("nu", "ν"),
         Column("a_over_h", "a/h"),
         Column("exponent", "exponent", "exponent_error"),
@@ -48,22 +35,17 @@ LISTING = Listing(
 )
 
 
-def make(asked: Request) -> Made:
+def make(asked: base.Request) -> base.Made:
     """Layers, finite spheres and impacts."""
     found = study(asked.quick, asked.where, asked.progress, asked.jobs)
-
-    def write(where: Path) -> None:
-        from fe_contact.studies.exponents.chart import plot_exponents
-
-        found.write(where)
-        plot_exponents(found, where)
+    from fe_contact.studies.exponents.chart import plot_exponents
 
     said = (*(one.told for one in found.pairs), *sentences(found.impacts))
-    section = Section((headline(found),), said, FIGURES, (LISTING,), worst(found.checks), missed=found.missed)
-    return Made(section, write)
+    section = base.Section((headline(found),), said, FIGURES, (LISTING,), worst(found.checks), missed=found.missed)
+    return base.Made(section, (found.write, partial(plot_exponents, found)))
 
 
-def headline(found: Exponents) -> Headline:
+def headline(found: Exponents) -> base.Headline:
     """Whether finite elements find the exact exponents; how wrong those are that are read from impacts."""
     covered, biases = [one.covered for one in found.checks], of_impacts(found.impacts)["worst_bias"]
     reader = max(biases, key=lambda name: abs(biases[name]))
@@ -72,14 +54,14 @@ def headline(found: Exponents) -> Headline:
         f"places; read from viscoelastic impacts, an exponent is off by up to {biases[reader]:+.2f} "
         f"({reader.replace('_', ' ')})."
     )
-    return Headline(VERIFIED if all(covered) else DIFFERS, said)
+    return base.Headline(base.VERIFIED if all(covered) else base.DIFFERS, said)
 
 
-def worst(checks: Sequence[Check]) -> Worst:
+def worst(checks: Sequence[Check]) -> base.Worst:
     """Of exponents and of D, by finite elements against the exact ones."""
     ratios = [ratio for one in checks for ratio in _ratios(one)]
     ratio, place = max(ratios)
-    return Worst(ratio, len(ratios), place)
+    return base.Worst(ratio, len(ratios), place)
 
 
 def _ratios(one: Check) -> Iterator[tuple[float, str]]:
@@ -91,7 +73,7 @@ def _ratios(one: Check) -> Iterator[tuple[float, str]]:
         yield abs((found.value or 0.0) - exact) / ((found.error or 0.0) + ROUNDING), f"{name} of the {place}"
 
 
-MEMBER = ReportPart(
+MEMBER = base.ReportPart(
     rank=30,
     title="Exponents",
     question="Where does the exponent of force over depth lie, and what do impacts tell of it?",

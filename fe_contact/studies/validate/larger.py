@@ -13,19 +13,8 @@ from fe_contact.methods import settings
 from fe_contact.studies import journal
 from fe_contact.studies.files import Line, write_study
 from fe_contact.studies.larger_models import MeasuredEffect, measure
-from fe_contact.studies.validate.base import (
-    DIFFERS,
-    HOLDS,
-    OPEN,
-    Column,
-    Headline,
-    Listing,
-    Made,
-    ReportPart,
-    Request,
-    Section,
-    named,
-)
+from fe_contact.studies.validate import base
+from fe_contact.studies.validate.base import Column, columns
 from lumped.scene.scene import Scene
 from lumped.scene.tables import load
 
@@ -37,22 +26,18 @@ MOST = 2  # look: places that a sentence names
 Effects = Mapping[str, tuple[MeasuredEffect, ...]]  # by their scenes
 
 
-def make(asked: Request) -> Made:
+def make(asked: base.Request) -> base.Made:
     """Every effect above the tolerance of some scenes, by the next larger model; rows are kept scene by scene."""
     calls = {name: partial(effects_of, name) for name in (FEW if asked.quick else SCENES)}
-    return of_effects(journal.rows(asked.where / KEPT, calls, asked.progress, asked.jobs))
+    found = journal.rows(asked.where / KEPT, calls, asked.progress, asked.jobs)
+    section = base.Section((headline(found),), tuple(sentences(found)), (), (LISTING,))
+    return base.Made(section, (partial(write, found),))
 
 
 def effects_of(name: str) -> tuple[MeasuredEffect, ...]:
     """The effects of a packaged scene at its default tolerance. Raises BadInput, NotReached."""
     scene, table = load(Scene, name)
     return measure(scene, settings(table, None, scene.source))
-
-
-def of_effects(found: Effects) -> Made:
-    """The section of such effects."""
-    section = Section((headline(found),), tuple(sentences(found)), (), (LISTING,))
-    return Made(section, lambda where: write(found, where))
 
 
 def ratio(effect: MeasuredEffect) -> float | None:
@@ -67,17 +52,17 @@ def exceeds(effect: MeasuredEffect) -> bool:
     return ratio(effect) is not None and abs(effect.change or 0.0) - (effect.error or 0.0) > abs(effect.estimate or 0.0)
 
 
-def headline(found: Effects) -> Headline:
+def headline(found: Effects) -> base.Headline:
     """Whether the larger models change the peak force by no more than the ledger says."""
     ratios = [size for every in found.values() for one in every if (size := ratio(one)) is not None]
     if not ratios:
-        return Headline(OPEN, "No larger model was run whose effect the ledger estimates.")
+        return base.Headline(base.OPEN, "No larger model was run whose effect the ledger estimates.")
     beyond = [f"{scene}, {one.effect}" for scene, every in found.items() for one in every if exceeds(one)]
     said = (
         f"Larger models were run for {len(ratios)} effects: they change the peak force by {min(ratios):.2g} to "
-        f"{max(ratios):.2g} times what the ledger says; by more: {named(beyond, MOST) or 'none'}."
+        f"{max(ratios):.2g} times what the ledger says; by more: {base.named(beyond, MOST) or 'none'}."
     )
-    return Headline(DIFFERS if beyond else HOLDS, said)
+    return base.Headline(base.DIFFERS if beyond else base.HOLDS, said)
 
 
 def sentences(found: Effects) -> list[str]:
@@ -111,19 +96,18 @@ def write(found: Effects, where: Path) -> None:
     write_study(where, "larger", {"schema": SCHEMA, "larger": lines}, {"larger": lines}, {"larger": header})
 
 
-LISTING = Listing(
+LISTING = base.Listing(
     "larger.csv",
     "Effects above the tolerance, estimated and measured, over the peak force",
     (
-        Column("scene", "scene"),
-        Column("effect", "effect"),
+        *columns("scene", "effect"),
         Column("key", "selected by"),
         Column("estimate", "estimated"),
         Column("change", "measured", "change_error"),
         Column("change_over_estimate", "over estimate"),
     ),
 )
-MEMBER = ReportPart(
+MEMBER = base.ReportPart(
     rank=15,
     title="Larger models",
     question="Where a scene needs a larger model, does that model change the force as much as the ledger says?",

@@ -3,34 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 from fe_contact.studies.restitution import RestitutionLine, table, write_restitution
-from fe_contact.studies.validate.base import (
-    DIFFERS,
-    HOLDS,
-    Column,
-    Figure,
-    Headline,
-    Listing,
-    Made,
-    ReportPart,
-    Request,
-    Section,
-)
+from fe_contact.studies.validate import base
+from fe_contact.studies.validate.base import Column, columns
 from lumped.restitution import EXACT
 from lumped.schema.csv_file import write_csv
 
 WITHIN = 1e-6  # of a restitution that counts as the one asked for: ten times the tolerance of each impact
 COLUMNS = ("law", "damping", "exit", "difference", "at")
-FIGURE = Figure("restitution", "Restitution asked for and obtained, by every law and published damping",
+FIGURE = base.Figure("restitution", "Restitution asked for and obtained, by every law and published damping",
                 ("restitution.csv",))  # fmt: skip
-LISTING = Listing(
+LISTING = base.Listing(
     "formulas.csv",
     "Every damping formula at its worst",
     (
-        Column("law", "law"),
-        Column("damping", "damping"),
+        *columns("law", "damping"),
         Column("exit", "contact ends at zero"),
         Column("difference", "obtained less asked, at worst"),
         Column("at", "at e ="),
@@ -38,23 +28,22 @@ LISTING = Listing(
 )
 
 
-def make(asked: Request) -> Made:
+def make(asked: base.Request) -> base.Made:
     """One impact a law, formula, exit and restitution."""
     asked.progress("impacts")
     lines = table()
+    from fe_contact.studies.restitution_chart import plot_restitution
 
-    def write(where: Path) -> None:
-        from fe_contact.studies.restitution_chart import plot_restitution
-
-        write_restitution(lines, where)
-        rows = [(one.law, one.damping, one.exit, *(one.worst or (None, None))) for one in lines]
-        write_csv(where / "formulas.csv", COLUMNS, rows)
-        plot_restitution(lines, where)
-
-    return Made(Section((headline(lines),), (), (FIGURE,), (LISTING,)), write)
+    writers = (partial(write, lines) for write in (write_restitution, _write_formulas, plot_restitution))
+    return base.Made(base.Section((headline(lines),), (), (FIGURE,), (LISTING,)), tuple(writers))
 
 
-def headline(lines: Sequence[RestitutionLine]) -> Headline:
+def _write_formulas(lines: Sequence[RestitutionLine], where: Path) -> None:
+    rows = [(one.law, one.damping, one.exit, *(one.worst or (None, None))) for one in lines]
+    write_csv(where / "formulas.csv", COLUMNS, rows)
+
+
+def headline(lines: Sequence[RestitutionLine]) -> base.Headline:
     """Whether the exact dampings give what is asked, and the worst of the published ones."""
     exact = [one for one in lines if one.damping == EXACT and one.worst]
     published = [one for one in lines if one.damping != EXACT and one.worst]
@@ -65,7 +54,7 @@ def headline(lines: Sequence[RestitutionLine]) -> Headline:
         f"exact dampings; of {len(published)} published ones {sum(abs(_off(one)) <= WITHIN for one in published)} give "
         f"it, the worst is {most.damping.replace('_', ' ')} in {most.law.replace('_', ' ')}, off by {_off(most):+.2f}."
     )
-    return Headline(HOLDS if given == len(exact) else DIFFERS, said)
+    return base.Headline(base.HOLDS if given == len(exact) else base.DIFFERS, said)
 
 
 def _off(line: RestitutionLine) -> float:
@@ -73,7 +62,7 @@ def _off(line: RestitutionLine) -> float:
     return line.worst[0]
 
 
-MEMBER = ReportPart(
+MEMBER = base.ReportPart(
     rank=60,
     title="Restitution",
     question="Does a law bounce as hard as it was asked to?",

@@ -3,31 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
+from functools import partial
 
 from fe_contact.studies.stability.bars import DEFAULT, KEYS
 from fe_contact.studies.stability.base import Row, rows_of, studies, told, write_stability
-from fe_contact.studies.validate.base import (
-    DIFFERS,
-    HOLDS,
-    Column,
-    Figure,
-    Headline,
-    Listing,
-    Made,
-    ReportPart,
-    Request,
-    Section,
-)
+from fe_contact.studies.validate import base
+from fe_contact.studies.validate.base import Column, columns
 
-LISTING = Listing(
+LISTING = base.Listing(
     "table.csv",
     "A bouncing bar over ten periods",
     (
-        Column("scheme", "scheme"),
-        Column("mass", "mass"),
-        Column("tip", "tip"),
-        Column("enforcement", "enforcement"),
+        *columns("scheme", "mass", "tip", "enforcement"),
         Column("cfl", "CFL"),
         Column("drift", "energy drift"),
         Column("ripple", "ripple"),
@@ -39,22 +26,18 @@ LISTING = Listing(
 )
 
 
-def make(asked: Request) -> Made:
+def make(asked: base.Request) -> base.Made:
     """Every case of every study."""
     rows = rows_of(asked.quick, asked.jobs, asked.where, asked.progress)
-
-    def write(where: Path) -> None:
-        from fe_contact.studies.stability._chart import plot_stability
-
-        write_stability(rows, where)
-        plot_stability(rows, where)
+    from fe_contact.studies.stability._chart import plot_stability
 
     drawn = dict.fromkeys(row["study"] for row in rows)
-    figures = tuple(Figure(name, studies()[name].title, (f"{name}.csv",)) for name in drawn)
-    return Made(Section((headline(rows),), tuple(told(rows)), figures, (LISTING,)), write)
+    figures = tuple(base.Figure(name, studies()[name].title, (f"{name}.csv",)) for name in drawn)
+    section = base.Section((headline(rows),), tuple(told(rows)), figures, (LISTING,))
+    return base.Made(section, (partial(write_stability, rows), partial(plot_stability, rows)))
 
 
-def headline(rows: Sequence[Row]) -> Headline:
+def headline(rows: Sequence[Row]) -> base.Headline:
     """Whether the defaults keep all limits, how many ways do, how many cases end as a named failure."""
     judged = [row for row in rows if "all_kept" in row]
     default = [row["all_kept"] for row in judged if all(row[key] == DEFAULT[key] for key in KEYS) and row["cfl"] == 1.0]
@@ -65,10 +48,10 @@ def headline(rows: Sequence[Row]) -> Headline:
         f"of {len(judged)} ways tried {kept} keep{'s' if kept == 1 else ''} them all. Of all {len(rows)} stability "
         f"cases {failed} end as a named failure."
     )
-    return Headline(HOLDS if good else DIFFERS, said)
+    return base.Headline(base.HOLDS if good else base.DIFFERS, said)
 
 
-MEMBER = ReportPart(
+MEMBER = base.ReportPart(
     rank=80,
     title="Stability",
     question="Where do methods break, and do the defaults hold there?",

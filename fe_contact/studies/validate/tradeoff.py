@@ -3,50 +3,42 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 
 from fe_contact.studies.files import write_study
 from fe_contact.studies.tradeoff.study import SCHEMA, Tradeoff, line_of, tradeoff
 from fe_contact.studies.tradeoff.verdict import brief, covered, finite_elements, known
-from fe_contact.studies.validate.base import Column, Figure, Listing, Made, ReportPart, Request, Section
+from fe_contact.studies.validate import base
+from fe_contact.studies.validate.base import columns
 from lumped.scene.scene import Scene
 
 SCENE = "polymer-sphere"
-FIGURE = Figure("work", "Error of finite elements over counted work, setting by setting", ("tradeoff.csv",))
-LISTING = Listing(
+FIGURE = base.Figure("work", "Error of finite elements over counted work, setting by setting", ("tradeoff.csv",))
+LISTING = base.Listing(
     "tradeoff.csv",
     "Every method and setting",
     (
-        Column("method", "method"),
-        Column("tolerance", "tolerance"),
-        Column("elements", "elements"),
-        Column("order", "order"),
-        Column("elements_per_contact", "elements per contact"),
-        Column("steps", "steps"),
-        Column("enforcement", "enforcement"),
-        Column("error", "error"),
-        Column("bar", "bar"),
-        Column("operations", "operations"),
-        Column("leaves_out", "leaves out"),
-        Column("failure", "failure"),
+        *columns("method", "tolerance", "elements", "order", "elements_per_contact", "steps", "enforcement"),
+        *columns("error", "bar", "operations", "leaves_out", "failure"),
     ),
 )
 
 
-def make(asked: Request) -> Made:
+def make(asked: base.Request) -> base.Made:
     """Every method and setting on one scene."""
     found = tradeoff(Scene.load(SCENE), {}, asked.quick, asked.where, asked.progress)
+    from fe_contact.studies.tradeoff.chart import plot_work
+
     said = sentences(found)
+    section = base.Section((), tuple(said), (FIGURE,), (LISTING,))
+    return base.Made(section, (partial(_write, found, said), partial(plot_work, found, said)))
 
-    def write(where: Path) -> None:
-        from fe_contact.studies.tradeoff.chart import plot_work
 
-        lines = [{key: cell for key, cell in line_of(one).items() if key != "cpu_s"} for one in found.points]
-        content: Mapping[str, object] = {"schema": SCHEMA, "scene": SCENE, "verdict": said, "points": lines}
-        write_study(where, "tradeoff", content, {"tradeoff": lines})
-        plot_work(found, said, where)
-
-    return Made(Section((), tuple(said), (FIGURE,), (LISTING,)), write)
+def _write(found: Tradeoff, said: list[str], where: Path) -> None:
+    lines = [{key: cell for key, cell in line_of(one).items() if key != "cpu_s"} for one in found.points]
+    content: Mapping[str, object] = {"schema": SCHEMA, "scene": SCENE, "verdict": said, "points": lines}
+    write_study(where, "tradeoff", content, {"tradeoff": lines})
 
 
 def sentences(found: Tradeoff) -> list[str]:
@@ -64,7 +56,7 @@ def sentences(found: Tradeoff) -> list[str]:
     return [*said, known(found.points), covered(tried, found.points)]
 
 
-MEMBER = ReportPart(
+MEMBER = base.ReportPart(
     rank=90,
     title="What accuracy costs",
     question="How much work does an error bar take, and are the defaults near the front?",
