@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import sys
 import tomllib
+from collections.abc import Callable
 from itertools import cycle, product
 from pathlib import Path
 
@@ -109,3 +110,12 @@ def test_nothing_is_overwritten_and_nothing_wrong_is_written(empty: Path, capsys
         assert named in capsys.readouterr().err
     assert Path("a.toml").read_text(encoding="utf-8") == before
     assert [path.name for path in empty.iterdir()] == ["a.toml"]
+
+
+def test_all_kinds_that_are_none_are_named(refused: Callable[..., list[str]]) -> None:
+    said = refused("new", "--striker", "foo", "--target", "bar", "--material", "baz")
+    assert [line.partition(" is not known")[0] for line in said] == [
+        "--striker: 'foo'",
+        "--target: 'bar'",
+        "--material: 'baz'",
+    ]

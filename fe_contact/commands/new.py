@@ -21,7 +21,7 @@ from lumped.scene.tables import STRIKER_KEYS, TARGET_KEYS, Model, Motion, SceneR
 from lumped.schema import Table
 from lumped.schema.files import SCENES, overridden, parse_assignment, parsed, toml_text
 from lumped.schema.keys import Key, keys_of, optional
-from lumped.schema.members import Folder, Member, alternatives
+from lumped.schema.members import Folder, Member, alternatives, unavailable
 from lumped.shapes import SHAPES
 from lumped.targets import TARGETS
 
@@ -49,7 +49,9 @@ HEAD = (
 def execute(args: argparse.Namespace) -> int:
     """Ask on a terminal for what is not given, check, write or print; 0. Raises BadInput."""
     asking = sys.stdin is not None and sys.stdin.isatty() and sys.stderr.isatty() and not args.quiet
-    kinds = {part: _kind(part, getattr(args, part), asking) for part in START}
+    given = {part: getattr(args, part) for part in START}
+    _check(given)
+    kinds = {part: kind or _kind(part, asking) for part, kind in given.items()}
     tables = overridden(first(**kinds), base.overrides_of(args), "--set")
     if asking:
         _ask(tables)
@@ -145,13 +147,21 @@ def _line(name: str, value: object, key: Key | None, column: int = COLUMN) -> st
     return f"{f'{name} = {shown.strip()}':{column - 1}s}{said}".rstrip()
 
 
-def _kind(part: str, given: str | None, asking: bool) -> str:
-    """The kind of a part: given, answered, or the first. Raises BadInput for an unknown one."""
+def _check(given: Mapping[str, str | None]) -> None:
+    """Raise BadInput for every kind that is none."""
+    faults = [
+        Fault(f"--{part}", "", unavailable(FOLDERS[part].names, kind))
+        for part, kind in given.items()
+        if kind is not None and kind not in FOLDERS[part].names
+    ]
+    if faults:
+        raise BadInput(faults)
+
+
+def _kind(part: str, asking: bool) -> str:
+    """The kind of a part that is not given: answered, or the first."""
     key = Key(Member(FOLDERS[part].package), "which kind")
-    if given is None:
-        return str(_answered(part, START[part], key)) if asking else START[part]
-    FOLDERS[part].get(given, f"--{part}")
-    return given
+    return str(_answered(part, START[part], key)) if asking else START[part]
 
 
 def _ask(tables: Table) -> None:
