@@ -338,15 +338,9 @@ class Zone:
     smallest: float
 
     @classmethod
-    def of(cls, radii: Array) -> Zone:
+    def of(cls, radii: Array, margin: float = MARGIN) -> Zone:
         """Of contact radii, m."""
-        reference = MARGIN * float(radii.max())
-        return cls(reference, float(radii.min()) / reference)
-
-    @classmethod
-    def finite(cls, radii: Array) -> Zone:
-        """The same of contact radii, m, that large strains change by little."""
-        reference = FINITE_MARGIN * float(radii.max())
+        reference = margin * float(radii.max())
         return cls(reference, float(radii.min()) / reference)
 
     @classmethod

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sparse
 
-from fe_contact.assembly.forms import Array, Basis, Indices, Matrix, vector_dofs
+from fe_contact.assembly.forms import Array, Basis, Indices, Matrix, values, vector_dofs, volumes
 from fe_contact.assembly.interior import factorized
 from fe_contact.solids.base import AXIAL, RADIAL, PointAnswer, Response, State
 from fe_contact.solids.rolled import Rolled
@@ -40,11 +40,9 @@ class Bulk:
     def of(cls, basis: Basis, plane: bool, elements: Indices, rolled: Rolled | None = None) -> Bulk:
         """Some elements of a scalar basis, axisymmetric or, of both halves, in plane strain, maybe ``rolled`` flat."""
         flat = np.asarray(basis.global_coordinates())
-        radius = flat[0]
         gradient = np.stack([np.asarray(shape[0].grad) for shape in basis.basis], axis=-1)
-        value = np.stack([np.broadcast_to(np.asarray(shape[0]), radius.shape) for shape in basis.basis], axis=-1)
-        hoop = np.zeros_like(value) if plane else value / radius[:, :, None]
-        weight = np.asarray(basis.dx) * (2.0 if plane else 2.0 * np.pi * radius)
+        value, weight = values(basis, flat[0].shape), volumes(basis, plane)
+        hoop = np.zeros_like(value) if plane else value / flat[0][:, :, None]
         if rolled is not None:
             gradient, weight = rolled.slopes(gradient, flat), weight * rolled.stretch(flat)
         slopes = np.concatenate([gradient, hoop[None]])[:, elements]

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fe_contact.assembly.forms import Array, Indices, vector_dofs
-from fe_contact.assembly.surface import FACET_POINTS, Surface, lagrange
+from fe_contact.assembly.surface import FACET_POINTS, Surface
 from lumped.shapes import Shape
 
 Points = npt.NDArray[np.bool_]  # which of them, (facets, points)
@@ -150,14 +150,11 @@ class Skin:
     @classmethod
     def of(cls, surface: Surface, order: int, size: int, placed: Callable[[Array], Array] = flat_places) -> Skin:
         """Of a boundary of elements of an ``order``; ``placed``: where points of its coordinates are, (2, ...)."""
-        corners = surface.corners(order)
-        count = corners.size - 1
-        gauss, weight = np.polynomial.legendre.leggauss(order + FACET_POINTS)
-        nodes = order * np.arange(count)[:, None] + np.arange(order + 1)
-        share = 0.5 * (gauss + 1.0)
-        coordinate = corners[:-1, None] + np.diff(corners)[:, None] * share
-        weights = 0.5 * np.diff(corners)[:, None] * weight * surface.measure(coordinate)
-        return cls(placed(coordinate), weights, lagrange(share, order), vector_dofs(surface.dofs[nodes].T), size)
+        each = order + FACET_POINTS
+        coordinate, weights, trace = surface.quadrature(order)
+        nodes = order * np.arange(coordinate.size // each)[:, None] + np.arange(order + 1)
+        places, dofs = placed(coordinate.reshape(-1, each)), vector_dofs(surface.dofs[nodes].T)
+        return cls(places, weights.reshape(-1, each), trace[:each, : order + 1], dofs, size)
 
     @cached_property
     def products(self) -> Array:

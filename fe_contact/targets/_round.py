@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
 import meshes
 from fe_contact.assembly.cache import Recipe, cached, cached_surface
-from fe_contact.assembly.forms import Array, Basis
+from fe_contact.assembly.forms import Array, Basis, volumes
 from fe_contact.assembly.interior import Floating
-from fe_contact.assembly.operators import ElasticBody, axisymmetric, basis_on, made, operator_of, plane
+from fe_contact.assembly.operators import ElasticBody, basis_on, made, operator_of
 from fe_contact.assembly.surface import crown, trace_between
 from fe_contact.bodies.bulk_memory import Moduli
 from fe_contact.bodies.pressing import (
@@ -136,14 +135,9 @@ def _meshed(elements: float, order: int, smallest: float, contact: float, suppor
     """Of unit radius, points and ``contact`` in rad from the pole; ``support``: whether it is held."""
     mesh = made(meshes.cylinder if in_plane else meshes.sphere, elements, smallest, contact, order, support)
     basis = basis_on(mesh, order)
-    around = 1.0 if in_plane else 2.0 * np.pi * np.asarray(basis.global_coordinates())[0]
-    return ElasticBody(
-        basis,
-        partial(plane if in_plane else axisymmetric, basis),
-        _fixed(basis, support),
-        crown(basis, contact, None if in_plane else 0.0),
-        None if support else Floating.of(basis, around * np.asarray(basis.dx)),
-    )
+    floating = None if support else Floating.of(basis, volumes(basis, in_plane))
+    surface = crown(basis, contact, None if in_plane else 0.0)
+    return ElasticBody.alone(basis, _fixed(basis, support), surface, in_plane, floating)
 
 
 def _fixed(basis: Basis, support: bool) -> npt.NDArray[np.int64]:

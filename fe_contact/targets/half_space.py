@@ -29,6 +29,7 @@ from fe_contact.assembly.operators import (
 )
 from fe_contact.assembly.surface import flat, lagrange
 from fe_contact.bodies.pressing import (
+    FINITE_MARGIN,
     FINITE_REFINEMENT,
     LINE_REFINEMENT,
     REFINEMENT,
@@ -161,7 +162,7 @@ def _upwards(basis: Basis, depth: float) -> Matrix:
 
 def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:
     """The half-space for large strains, on one mesh for all contacts; ``radii`` expected of them, m."""
-    zone = Zone.finite(radii)
+    zone = Zone.of(radii, FINITE_MARGIN)
     elements = FINITE_REFINEMENT * numerics.elements_per_contact
     body = _solid(elements, zone.smallest, numerics.far_radius, numerics.order)
     return SolidMesh(body, zone.reference)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
 import meshes
 from fe_contact.assembly.cache import cached
 from fe_contact.assembly.forms import Array
-from fe_contact.assembly.operators import ElasticBody, SolidMesh, axisymmetric, basis_on, made, operator_of
+from fe_contact.assembly.operators import ElasticBody, SolidMesh, basis_on, made, operator_of
 from fe_contact.assembly.surface import crown
 from fe_contact.bodies.bulk_memory import Moduli
 from fe_contact.bodies.pressing import (
@@ -96,7 +95,7 @@ def _body(elements: float, order: int, smallest: float, contact: float, mean_rad
     """In units of the section's radius, points and ``contact`` in rad from its top."""
     basis = basis_on(made(meshes.o_ring, elements, smallest, contact, mean_radius, order), order)
     fixed = held(basis, along=(), across=("base",))
-    return ElasticBody(basis, partial(axisymmetric, basis), fixed, crown(basis, contact, mean_radius))
+    return ElasticBody.alone(basis, fixed, crown(basis, contact, mean_radius))
 
 
 MEMBER = MeshedTarget(still, struck=struck, relaxing=relaxing, seconds=3.5, paired=True, solid=solid)

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import meshes
 from fe_contact.assembly.cache import Recipe, cached
 from fe_contact.assembly.forms import Array
-from fe_contact.assembly.operators import ElasticBody, SolidMesh, axisymmetric, basis_on, made
+from fe_contact.assembly.operators import ElasticBody, SolidMesh, basis_on, made
 from fe_contact.assembly.surface import face
 from fe_contact.bodies.bulk_memory import Moduli
 from fe_contact.bodies.pressing import FINITE_REFINEMENT, BodyStill, Still, held, thickness_over
@@ -70,7 +68,7 @@ def _body(
     """Of unit height, loaded up to the rim alone; ``graded`` to the corners of a bonded base."""
     basis = basis_on(made(meshes.washer, elements, inner, outer, rim, bonded and graded), order)
     fixed = held(basis, along=("base",) if bonded else (), across=("base",))
-    return ElasticBody(basis, partial(axisymmetric, basis), fixed, face(basis, rim))
+    return ElasticBody.alone(basis, fixed, face(basis, rim))
 
 
 MEMBER = MeshedTarget(still, relaxing=relaxing, solid=solid)

@@ -9,7 +9,7 @@ import numpy as np
 import meshes
 from fe_contact.assembly.cache import cached_by_unknowns
 from fe_contact.assembly.far_field import on_boundary
-from fe_contact.assembly.forms import Basis, Matrix, check_compressible, mass, plane_mass
+from fe_contact.assembly.forms import Basis, Matrix, check_compressible, mass
 from fe_contact.assembly.operators import basis_on, boundary, made, moduli
 from fe_contact.assembly.surface import flat
 from fe_contact.bodies.pressing import held, thickness_over
@@ -126,7 +126,7 @@ def unit_layer(
         flat(basis, 2 if plane else 3),
         fixed,
         masses,
-        local=lambda: plane_mass(basis) if plane else mass(basis),
+        local=lambda: mass(basis, plane),
         springs=lambda: [matrix(basis, plane, *one) for one in ((1.0, 0.0), (0.0, 1.0))],
         absorbing=lambda: [_side(basis, plane, component) for component in (0, 1)],
     )
