@@ -21,7 +21,7 @@ from fe_contact.assembly.operators import ElasticBody, SurfaceOperator
 from fe_contact.bodies.bulk_memory import BulkBody, Moduli
 from fe_contact.bodies.memory import SurfaceBody
 from fe_contact.bodies.modes import ByModes, Condensed, Modes, modes
-from fe_contact.bodies.offer import Half, Offer, Recalled
+from fe_contact.bodies.offer import Half, Offer
 from fe_contact.contact.problem import PressedSurface
 from fe_contact.schemes.base import MemoryScheme
 from fe_contact.steppers.bulk_surface import Pace
@@ -217,17 +217,13 @@ class StackedBody:
         """Elastic energy in all springs, J."""
         return sum(half.stored(own) for half, own in zip(self.halves, memory, strict=True))
 
-    def dissipated(self, before: Memory, after: Memory, length: float) -> float:
-        """Heat of a step, J."""
+    def spent(self, before: Memory, after: Memory, length: float) -> tuple[float, float]:
+        """Heat of a step, J, and of the work in it what the scheme leaves unaccounted for, J."""
         steps = zip(self.halves, before, after, strict=True)
-        return sum(half.dissipated(first, then, length) for half, first, then in steps)
+        heats, losses = zip(*(half.spent(first, then, length) for half, first, then in steps), strict=True)
+        return sum(heats), sum(losses)
 
-    def lost(self, before: Memory, after: Memory, length: float) -> float:
-        """Of the work in a step, what the scheme leaves unaccounted for, J."""
-        steps = zip(self.halves, before, after, strict=True)
-        return sum(half.lost(first, then, length) for half, first, then in steps)
-
-    def _pressed(self, found: Sequence[Recalled], now: float) -> PressedSurface:
+    def _pressed(self, found: Sequence[Offer], now: float) -> PressedSurface:
         """All sides, each with its modulus over the common one; a steady body alone is the same in every step."""
         steady = all(side.steady for side in self.sides)
         if steady and len(self.sides) == 1:

@@ -215,7 +215,7 @@ def test_what_a_straight_line_misses_is_the_faded_rest_of_how_a_gap_closes(ratio
         for depth, gap in ((0.02, wide), (0.06, narrow))
     )
     relaxation = Relaxation(1.0, (1.0, 2.0), tuple(length / ratio for ratio in ratios))
-    stepper = SimpleNamespace(radii=radii, heights=0.5 * radii**2, strike=SimpleNamespace(relaxation=relaxation))
+    stepper = SimpleNamespace(radii=radii, heights=0.5 * radii**2, relaxation=relaxation)
     made_up: Any = (stepper, before, SimpleNamespace(state=after, length=length, radius=radius))
     found = _missed(*made_up, edge)
     shares = (np.arange(4000) + 0.5) / 4000.0
