@@ -87,9 +87,6 @@ class Meshed(Protocol):
     def pressed(self) -> PressedSurface:
         """What contact knows of it."""
 
-    def problem(self, overlap: Array, penalty: float, yielding: float | Array) -> ContactProblem:
-        """Contact problem on the unit mesh, of free overlaps times modulus (q,)."""
-
 
 class Still(Protocol):
     """A body at rest, ready to be pressed by one profile."""
@@ -253,7 +250,8 @@ def _enforced(
 ) -> tuple[ContactSolution, int]:
     """The contact problem on the mesh scaled by ``scale``, m; and how many solves it took."""
     enforcement = ENFORCEMENTS.get(numerics.enforcement)
-    problem = surface.problem(np.maximum(overlap, -BEYOND * scale), numerics.penalty, surface.operator.yielding)
+    free, yielding = np.maximum(overlap, -BEYOND * scale), surface.operator.yielding
+    problem = ContactProblem(surface.pressed, free, numerics.penalty, yielding)
     return enforcement.enforce(problem, touching), enforcement.solves
 
 

@@ -153,7 +153,7 @@ class Stepper(OfSurface):
                 raise MemoryTooSmall(radii[-1])
             height = np.minimum(self.strike.height(radii), BEYOND * radii[-1])  # a profile may end
             overlap = law.now * (free_depth - height) + interpolate(carried, limit, radii)
-            problem = self.surface.problem(overlap, self.numerics.penalty, law.now * give * scale)
+            problem = ContactProblem(self.surface.pressed, overlap, self.numerics.penalty, law.now * give * scale)
             solution = self.enforcement.enforce(problem, *guesses)
             iterations += solution.iterations
             if not solution.converged:
@@ -248,17 +248,6 @@ class ScaledSurface(Deformable):
     def felt(self, snapshot: Snapshot) -> tuple[Array, Array]:
         """Where the mesh follows the contact, what the snapshot says: it has no roughness to be freed of."""
         return (snapshot.radii, snapshot.pressure) if self.follows_contact else super().felt(snapshot)
-
-    def problem(self, overlap: Array, penalty: float, yielding: float | Array) -> ContactProblem:
-        """Contact problem on the unit mesh.
-
-        Parameters
-        ----------
-        overlap : (q,) free overlap times modulus at the quadrature points.
-        penalty : dimensionless penalty stiffness, in units of modulus over contact radius.
-        yielding : striker's displacement times modulus per unit-mesh force; 0 holds it fixed, (q,) counts by place.
-        """
-        return ContactProblem(self.pressed, overlap, penalty, yielding)
 
     def response(self, pressure: Array) -> Array:
         """Displacement times modulus of all surface nodes, (n_s,), under a unit-mesh pressure (q,)."""
