@@ -361,6 +361,12 @@ def smallest_struck(shape: Shape) -> float:
     return math.pow(FAINT, 1.0 / 3.0 if shape.tip_radius is not None and not shape.plane else 0.5)
 
 
+def struck_ends(shape: Shape, numerics: Numerics) -> tuple[float, float]:
+    """Radii, m, between which the contacts of an impact end, of the largest that a mesh is made for."""
+    largest = numerics.contact_radius / MARGIN
+    return smallest_struck(shape) * largest, largest
+
+
 def held(basis: Basis, along: tuple[str, ...], across: tuple[str, ...]) -> Indices:
     """Degrees of freedom along the surface, and across it, on boundaries by their names."""
     first = [2 * basis.get_dofs(name).flatten() for name in along]
