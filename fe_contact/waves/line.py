@@ -15,7 +15,7 @@ from typing import ClassVar, Protocol
 import numpy as np
 
 from fe_contact.assembly.forms import Array
-from fe_contact.budget.budget import Contacts
+from fe_contact.budget.budget import Contacts, Solution
 from fe_contact.budget.curve import PEAK_SHARE
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer
@@ -56,10 +56,11 @@ class Run:
 
 
 @dataclass(frozen=True, eq=False)
-class Line:
+class Line(Solution):
     """A march, the same with one cause of error varied, by cause, half the steps among them; a ``quarter`` of them.
 
-    ``runs``: all marches made so far, with other settings too.
+    ``runs``: all marches made so far, with other settings too. The tolerance rules what all contacts tell together; no
+    bars of the energies are known.
     """
 
     scene: Scene
@@ -75,28 +76,14 @@ class Line:
         return self.fine.reading.separated
 
     @property
-    def parts(self) -> tuple[Mapping[str, Quantity], ...]:
-        """One: the tolerance rules what all contacts tell together."""
-        return (self.quantities,)
-
-    @property
     def contacts(self) -> Contacts:
         """Every contact, where there may be several."""
         return self.fine.contacts
 
     @property
-    def grounded(self) -> None:
-        """Nothing is missing."""
-
-    @property
     def energy(self) -> Mapping[str, float]:
         """The account at the end, J."""
         return self.fine.energy
-
-    @property
-    def energy_errors(self) -> Mapping[str, float]:
-        """None is known."""
-        return {}
 
     @property
     def counted(self) -> Mapping[str, int]:
