@@ -82,6 +82,7 @@ def indent(
     BadInput for depths and materials that cannot be, NotReached where contact does not settle.
     """
     from fe_contact.indentation import indent as press
+    from fe_contact.indentation import slowly
     from fe_contact.methods import settings
     from lumped import Scene
     from lumped.scene.indenter import Indenter
@@ -89,8 +90,7 @@ def indent(
 
     table: Table = {}
     if isinstance(scene, Scene):
-        shape, target, material, striker = vars(scene.geometry).values()
-        indenter = Indenter(shape, material, target, striker, scene.model, scene.name, scene.source)
+        indenter = slowly(scene)
     else:
         indenter, table = load_indenter(Indenter, scene)
     return press(indenter, tuple(depths), settings(table, tolerance, indenter.source), instant)

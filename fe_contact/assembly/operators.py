@@ -19,7 +19,7 @@ from fe_contact.assembly.cache import Recipe
 from fe_contact.assembly.disk_cache import on_disk
 from fe_contact.assembly.far_field import plane_robin, robin
 from fe_contact.assembly.forms import Array, Basis, Indices, Matrix, elastic, isotropic, stiffness
-from fe_contact.assembly.interior import Floating, Interior, Solve
+from fe_contact.assembly.interior import Floating, Interior
 from fe_contact.assembly.surface import Surface, flat, trace_between
 from fe_contact.errors import BodyTooFine
 from meshes.errors import MeshTooLarge
@@ -114,7 +114,7 @@ class WholeBody:
 
     operator: SurfaceOperator
     basis: Basis
-    solve: Solve
+    solve: Interior
     work: Array | None
 
 
@@ -209,7 +209,7 @@ def condensed(
 
 
 def _influence(
-    displacement: Solve, normal: Matrix, watch: Matrix, loaded: int, worked: Matrix
+    displacement: Callable[[Array], Array], normal: Matrix, watch: Matrix, loaded: int, worked: Matrix
 ) -> tuple[Array, Array | None, Array | None]:
     """Inward displacement of the surface nodes, (n_s, loaded), and of what is watched, (loaded,), under unit forces;
     work of a stiffness, (loaded, loaded).

@@ -36,7 +36,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -50,7 +50,7 @@ from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.errors import ContactTooBrief
 from fe_contact.progress import Count, Progress, silent
 from fe_contact.schemes.base import SCHEMES
-from fe_contact.settings import Numerics
+from fe_contact.settings import AnyNumerics, Numerics
 from fe_contact.steppers.flat_end import FlatEnd
 from fe_contact.steppers.steps import Strike
 from fe_contact.steppers.struck import Deformable, Struck
@@ -87,7 +87,6 @@ ASYMPTOTIC = 1e-2  # of duration and first speed: so much the fewest steps may e
 NEARLY = 0.8  # share of the expected ratio that the durations must show: they stand for themselves alone
 ABOUT_A_STEP = (0.4, 9.0)  # step over relaxation time: outside, its weight in the step is within 1/8 of a power of it
 
-AnyNumerics = TypeVar("AnyNumerics", bound=Numerics)
 Read = Callable[[int, Numerics], Curve | None]  # one contact of a run
 
 

@@ -96,9 +96,7 @@ class OnTop:
 
     def overlap(self, place: Array, displacement: Array, depth: float) -> Overlap:
         """See :class:`Obstacle`."""
-        normal = np.zeros_like(place)
-        normal[1] = 1.0
-        return Overlap(depth + place[1] + displacement[1], normal, np.zeros((2, *place.shape)))
+        return _straight(depth + place[1] + displacement[1])
 
     def along(self, place: Array) -> Array:
         """From the ring's top, left or right."""
@@ -119,13 +117,17 @@ class OnUndeformed:
     def overlap(self, place: Array, displacement: Array, depth: float) -> Overlap:
         """See :class:`Obstacle`."""
         rise = self.profile.height(self.unit * np.abs(place[0])) / self.unit
-        normal = np.zeros_like(place)
-        normal[1] = 1.0
-        return Overlap(depth + place[1] - rise + displacement[1], normal, np.zeros((2, 2, *rise.shape)))
+        return _straight(depth + place[1] - rise + displacement[1])
 
     def along(self, place: Array) -> Array:
         """From the axis."""
         return np.asarray(place[0])
+
+
+def _straight(depth: Array) -> Overlap:
+    """With a striker whose surface counts as flat where it is met."""
+    none = np.zeros_like(depth)
+    return Overlap(depth, np.stack([none, np.ones_like(depth)]), np.zeros((2, 2, *depth.shape)))
 
 
 def flat_places(coordinate: Array) -> Array:

@@ -22,11 +22,10 @@ from fe_contact.progress import Counted, uncounted
 from fe_contact.settings import Numerics
 from fe_contact.solids.base import State
 from fe_contact.solids.block import press as pressed_alike
-from fe_contact.solids.bulk import Bulk, CoredBody
+from fe_contact.solids.bulk import Bulk, CoredBody, Rolled
 from fe_contact.solids.contact import Obstacle, OnDeformed, OnRound, OnTop, Points, Skin, flat_places
 from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.newton import Balance, BeyondRange, Encounter, Equilibrium, EquilibriumLost, balanced
-from fe_contact.solids.rolled import Rolled
 from fe_contact.targets.base import TARGETS
 from lumped.errors import BadInput, Fault
 from lumped.materials.energies.base import energy_of

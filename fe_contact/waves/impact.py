@@ -37,6 +37,7 @@ from fe_contact.dynamics.schemes import generalised_alpha
 from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
 from fe_contact.dynamics.stepping import Enforced, ExplicitStepper, ImplicitStepper
 from fe_contact.errors import MemoryTooSmall, TooManySteps
+from fe_contact.march.impact import balanced
 from fe_contact.march.impacts import Grounded
 from fe_contact.progress import Counted, uncounted
 from fe_contact.settings import WaveNumerics
@@ -137,7 +138,7 @@ def energies(moving: Moving, found: Motion, scene: Scene) -> dict[str, float]:
 def account(found: Motion, mass: float, waves: float = 0.0) -> dict[str, float]:
     """Terms in J at the end, of a ``mass``, kg, that moves as what is watched; ``waves`` that never come back."""
     last, out = found.samples[-1].energies, 0.5 * mass * float(found.samples[-1].velocity[0]) ** 2
-    terms = {
+    return balanced({
         "in": last.work,
         "out": out,
         "stored": last.rigid + last.deformable + last.strain - out - waves,
@@ -145,9 +146,7 @@ def account(found: Motion, mass: float, waves: float = 0.0) -> dict[str, float]:
         "radiated": last.radiated + waves,
         "contact": last.contact,
         "numerical": last.numerical,
-    }
-    terms["residual"] = 2 * terms["in"] - sum(terms.values())
-    return terms
+    })  # fmt: skip
 
 
 def parting(time: Array, force: Array, exponent: float) -> tuple[float, float] | None:

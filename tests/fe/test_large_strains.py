@@ -25,7 +25,7 @@ from fe_contact.settings import Given
 from fe_contact.solids import newton, pressing
 from fe_contact.solids.base import PointAnswer, State, elliptic
 from fe_contact.solids.block import press as press_block
-from fe_contact.solids.bulk import Bulk, Pattern
+from fe_contact.solids.bulk import Bulk, Pattern, Rolled
 from fe_contact.solids.contact import Obstacle, OnDeformed, OnRound, OnTop, OnUndeformed, Skin, flat_places
 from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.newton import (
@@ -38,7 +38,6 @@ from fe_contact.solids.newton import (
     balanced,
 )
 from fe_contact.solids.pressing import Reached, Solid, _core, _together, advanced, press
-from fe_contact.solids.rolled import Rolled
 from lumped import BadInput, Scene, laws
 from lumped.errors import NotReached
 from lumped.indentation import Indentation
