@@ -92,7 +92,8 @@ class BulkBody(Whole):
     def recalled(self, memory: BulkMemory, length: float) -> Offer:
         """What its past makes of a step of a length, s, at the nodes."""
         law = self._law(length)
-        return Offer(length, law.contact_modulus, self._past(memory, law), _pressed(self.modes, law.ratio))
+        past = law.contact_modulus * (self.modes.shape @ (self._carried(memory, law) / self._now(law)))
+        return Offer(length, law.contact_modulus, past, _pressed(self.modes, law.ratio))
 
     def pushed(self, memory: BulkMemory, length: float, load: Array) -> BulkMemory:
         """The memory after a step of a length, s, under forces at the nodes, (n,)."""
@@ -120,10 +121,6 @@ class BulkBody(Whole):
     def _now(self, law: BulkLaw) -> Array:
         """Stiffness of the modes against new strain, (m,), Pa."""
         return self.modes.volume * law.bulk.now + self.modes.shear * law.shear.now
-
-    def _past(self, memory: BulkMemory, law: BulkLaw) -> Array:
-        """What the past adds to displacement x contact modulus at the nodes, (n,), Pa m."""
-        return np.asarray(law.contact_modulus * (self.modes.shape @ (self._carried(memory, law) / self._now(law))))
 
     def _carried(self, memory: BulkMemory, law: BulkLaw) -> Array:
         """Force on the modes, (m,), that the past fixes."""

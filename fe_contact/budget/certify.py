@@ -151,7 +151,7 @@ def _judged(runs: Runs, read: Read, number: int, numerics: Numerics, alone: bool
     by_steps = swings or steps.jitter_falls
     changes: dict[str, Causes] = {
         "mesh": (by_mesh, *(() if by_steps else steps.jitter)),
-        "penalty": (_variation(curve(pressed), curve(penalty), factor(LEAST_ORDER["penalty"], stiffer)),),
+        "penalty": (Variation.between(curve(pressed), curve(penalty), factor(LEAST_ORDER["penalty"], stiffer)),),
         "time_step": (*steps.changes, *(steps.jitter if by_steps else ())),
         "far_field": _far_field(runs, curve, steps.value, cheap, mesh, alone),
     }
@@ -168,7 +168,7 @@ def _by_mesh(
     """Settings of another mesh, and what it changes; ``weights`` of one that stays, where the force jitters."""
     meshed = _judging(numerics, cheap, "mesh", not follows_contact)
     mesh, trusted = other_mesh(meshed) if follows_contact else other_mesh(meshed, MESH_ORDER_ANYWHERE)
-    change = partial(_variation, curve(meshed), curve(mesh), trusted)
+    change = partial(Variation.between, curve(meshed), curve(mesh), trusted)
     if follows_contact:
         return mesh, change()
     jittery = {"weights": weights, "since": DAMPED_SINCE} if weights else {}
@@ -219,7 +219,7 @@ def _far_field(
         return (Softening(value, factor(order, farther) * compliance_change(surface, other)),)
     if runs.surface(varied) is runs.surface(mesh):
         return ()
-    return (_variation(curve(mesh), curve(varied), factor(order, farther)),)
+    return (Variation.between(curve(mesh), curve(varied), factor(order, farther)),)
 
 
 @dataclass(frozen=True)
@@ -293,11 +293,6 @@ def _end_alike(*curves: Curve) -> bool:
     """Whether none separates or all do, and at one time: too long a step misses a graze under gravity, not the next."""
     durations = [curve.duration for curve in curves]
     return len({curve.separated for curve in curves}) == 1 and max(durations) <= MOST_APART * min(durations)
-
-
-def _variation(first: Curve | None, second: Curve | None, trusted: float, **more: Any) -> Variation | None:
-    """Between settings, ``trusted`` so many times as the error of the first; ``more``: as a variation takes it."""
-    return None if first is None or second is None else Variation(first, second, trusted, **more)
 
 
 def other_setting(numerics: AnyNumerics, key: str, least: float | None = None) -> tuple[AnyNumerics, bool]:

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -57,6 +58,11 @@ class Variation:
     since: float = LATE
     near: float = TOP
     creeps: bool = False
+
+    @classmethod
+    def between(cls, first: Curve | None, second: Curve | None, trusted: float, **more: Any) -> Self | None:
+        """With ``trusted`` as factor, and ``more`` as it takes it; None where a run of either setting failed."""
+        return None if first is None or second is None else cls(first, second, trusted, **more)
 
     @cached_property
     def errors(self) -> dict[str, float]:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import ClassVar, Protocol
+from typing import ClassVar
 
 import numpy as np
 
@@ -314,15 +314,10 @@ def _places(fine: RodReading) -> Array:
     return np.linspace(0.0, fine.rows[TIME, -1] * (1.0 - ROUNDING), COMPARED)
 
 
-class LineMarch(Protocol):
-    """One march of a scene with some settings, its steps ``counted``. Raises NotReached where it does not end."""
-
-    def __call__(self, numerics: WaveNumerics, counted: Counted = ...) -> Run: ...
-
-
 @dataclass(frozen=True, eq=False)
 class Doubling:
-    """``march`` of a scene with settings, and those with one cause of error ``varied`` at a time; ``most_steps``.
+    """``march`` of a scene with settings, its steps counted, which raises NotReached where it does not end; those with
+    one cause of error ``varied`` at a time; ``most_steps``.
 
     ``dented``: whether what was found, a dent, says more of what the model leaves out than the plan. Each march is made
     once: with twice the steps, the one before is what half of them give. ``bars``: the largest one by steps.
@@ -330,7 +325,7 @@ class Doubling:
 
     scene: Scene
     chosen: Plan
-    march: LineMarch
+    march: Callable[[WaveNumerics, Counted], Run]
     varied: Callable[[WaveNumerics], Mapping[str, WaveNumerics]]
     most_steps: float
     dented: bool

@@ -22,7 +22,7 @@ from fe_contact.waves.plan import DEFAULTS, SPREAD, TRAVEL, contact_time, placed
 from fe_contact.waves.targets.base import WaveTarget, too_fast
 from lumped.errors import BadInput, Fault
 from lumped.laws.mdr import ImpactScales
-from lumped.materials import Material, Relaxation
+from lumped.materials import Relaxation
 from lumped.scene.scene import Scene
 from lumped.targets.layer import Layer
 
@@ -162,13 +162,9 @@ def _dashpots(scene: Scene, unit: UnitBody, scale: float) -> Matrix:
     if material.young.viscosity:
         return None
     leaving = material.confined_modulus() if target.base == "bonded" else material.contact_modulus()
-    through, along = (_impedance(material, modulus) for modulus in (leaving.glassy, material.shear.glassy))
+    density, stiff = material.density or 0.0, (leaving.glassy, material.shear.glassy)
+    through, along = (math.sqrt(modulus * density) for modulus in stiff)  # Pa s/m
     return scale * (through * unit.dashpots[0] + along * unit.dashpots[1])
-
-
-def _impedance(material: Material, modulus: float) -> float:
-    """Pa s/m."""
-    return math.sqrt(modulus * (material.density or 0.0))
 
 
 MEMBER = WaveTarget.meshed(check, plan, lambda scene, numerics: [unit_of(scene, numerics)], moving)
