@@ -35,12 +35,6 @@ def recovers(scene: Scene, curve: Curve) -> bool:
     return lone and curve.separated and not scene.model.inertia and not curve.strike.relaxation.is_elastic
 
 
-def recovery_of(curve: Curve) -> Recovery:
-    """What is left on the axis over the time since separation, m."""
-    axis = _Axis(curve)
-    return axis.after(axis.path)
-
-
 def indentation_left(certified: Budget) -> IndentationLeft:
     """Rows from separation to the time when a hundredth of what goes is left, with bars."""
     curve, axes = certified.curve, dict[int, _Axis]()
