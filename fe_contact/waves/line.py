@@ -19,7 +19,7 @@ from fe_contact.budget.budget import Contacts, Solution
 from fe_contact.budget.curve import PEAK_SHARE
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer
-from fe_contact.budget.variation import SAFETY
+from fe_contact.budget.variation import SAFETY, largest_around
 from fe_contact.progress import Count, Counted, Progress
 from fe_contact.settings import Given, Numerics, WaveNumerics
 from fe_contact.waves.line_reading import DENT, DEPTH, FORCE, ROUNDING, TIME, VELOCITY, RodReading
@@ -108,8 +108,7 @@ class Line(Solution):
             rows = np.hstack([rows, more])[:, np.argsort(np.append(rows[TIME], between), kind="stable")]
         change = np.maximum(_largest(fine, coarse), 0.5 * _largest(coarse, coarser))
         width = int(COMPARED * min(max(AWAY, self.safety * self.moved / rows[TIME, -1]), 1.0))
-        around = np.lib.stride_tricks.sliding_window_view(np.pad(change, width, mode="edge"), 2 * width + 1).max(axis=1)
-        error = self.safety * np.interp(rows[TIME], _places(fine), around)
+        error = self.safety * np.interp(rows[TIME], _places(fine), largest_around(change, width))
         flat, curve = self.scene.profile.fixed_radius, self.scene.profile.load_curve
         radius = np.full(rows.shape[1], flat) if flat is not None else curve.contact_radius(rows[DENT])
         return History(rows[TIME], rows[DEPTH], rows[VELOCITY], rows[FORCE], np.asarray(radius), error)
