@@ -17,8 +17,7 @@ from scipy.interpolate import CubicHermiteSpline
 import fe_contact
 import lumped
 from fe_contact.cli import main
-from fe_contact.recovery import _Axis
-from fe_contact.reference import solve
+from fe_contact.reference import _Axis, solve
 from fe_contact.targets import half_space
 from lumped.laws import ting
 from lumped.materials import Relaxation
