@@ -61,7 +61,7 @@ CORE = (
     *ERRORS, "fe_contact/bodies/*.py", "fe_contact/steppers/*.py", "fe_contact/contact/enforcement/*.py",
     "fe_contact/schemes/*.py", "fe_contact/assembly/far_field.py", "fe_contact/targets/layer.py",
     "fe_contact/waves/*.py", "fe_contact/plastic/*.py", "fe_contact/solids/*.py", "fe_contact/large_strains.py",
-    "fe_contact/dynamics/*.py",
+    "fe_contact/dynamics/*.py", "fe_contact/studies/finite_length.py",
     "lumped/solvers/hereditary/*.py", "lumped/solvers/point/*.py", "lumped/solvers/mdr/*.py",
     "lumped/solvers/rod.py", "lumped/solvers/radau.py", "lumped/paper/table1.py", "lumped/laws/_hereditary*.py",
     "lumped/laws/mdr.py", "lumped/laws/correspondence.py", "lumped/laws/_assembly.py", "lumped/laws/_force_law.py",
