@@ -20,14 +20,13 @@ from fe_contact.assembly.disk_cache import on_disk
 from fe_contact.assembly.far_field import plane_robin, robin
 from fe_contact.assembly.forms import Array, Basis, Indices, Matrix, elastic, isotropic, stiffness
 from fe_contact.assembly.interior import Floating, Interior
-from fe_contact.assembly.surface import Surface, flat, trace_between
+from fe_contact.assembly.surface import Surface, trace_between
 from fe_contact.errors import BodyTooFine
 from meshes.errors import MeshTooLarge
 
 if TYPE_CHECKING:
-    from skfem import Element, MeshTri
+    from skfem import Element
 
-ORDERS = (1, 2, 3, 4)  # of triangles
 MOST_UNKNOWNS = 200_000  # of one body: its factors take a gigabyte and half a minute
 SOLVED_AT_ONCE = 32  # right-hand sides: more of them leave the processor's cache
 
@@ -141,22 +140,6 @@ def basis_on(mesh: Any, order: int) -> Basis:
     if unknowns > MOST_UNKNOWNS:
         raise BodyTooFine(f"a body of {unknowns} unknowns", f"accepted up to {MOST_UNKNOWNS}")
     return CellBasis(mesh, element(order), intorder=2 * order)
-
-
-def surface_operator(mesh: MeshTri, order: int, poisson: float) -> WholeBody:
-    """Assemble, factorise once and condense the half-space on ``mesh`` to its contact zone.
-
-    Parameters
-    ----------
-    mesh : boundaries ``surface``, ``axis``, ``far``; contact radius 1.
-    order : element order, 1 to 4.
-    poisson : Poisson's ratio.
-
-    Raises BodyTooFine for more unknowns than is bearable.
-    """
-    basis = basis_on(mesh, order)
-    fixed = 2 * basis.get_dofs("axis").flatten()
-    return condensed(basis, system_matrix(basis, poisson), fixed, poisson, flat(basis))
 
 
 def condensed(

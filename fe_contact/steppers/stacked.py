@@ -92,7 +92,8 @@ def side_of(body: Recipe[ElasticBody], material: Material, shape: Shape, pace: P
     """A meshed body under a pressure at its own points; ``pace`` of an impact in which it may relax by its bulk."""
     relaxation = shape.modulus(material).scaled(shape.total)
     if pace is not None and material.constant == "bulk" and not material.young.is_elastic:
-        found = modes(body, *pace.ratios(moduli := Moduli.of(material, shape.total)))
+        moduli = Moduli.of(material, shape.total)
+        found = modes(body, *pace.ratios(moduli))
         return BulkSide(found.operator, relaxation, found.operator.trace, modes=found, moduli=moduli)
     operator = _operator(body, material.nu)
     return BodySide(operator, relaxation, operator.trace)

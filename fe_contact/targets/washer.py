@@ -11,7 +11,7 @@ from fe_contact.bodies.bulk_memory import Moduli
 from fe_contact.bodies.pressing import FINITE_REFINEMENT, BodyStill, Still, held, thickness_over
 from fe_contact.settings import Numerics
 from fe_contact.steppers import bulk_surface
-from fe_contact.steppers.bulk_surface import BulkSurface
+from fe_contact.steppers.bulk_surface import BulkSurface, Pace
 from fe_contact.steppers.scaled_surface import on_mesh
 from fe_contact.targets.base import MeshedTarget
 from lumped.scene.geometry import Geometry
@@ -45,7 +45,7 @@ def relaxing(geometry: Geometry, numerics: Numerics) -> BulkSurface:
     target, rim = geometry.target, geometry.target.fixed_radius(geometry.shape)
     assert isinstance(target, Washer)
     moduli = Moduli.of(geometry.material, geometry.shape.total)
-    return bulk_surface.relaxing(meshed(geometry, numerics), moduli, numerics, target.height, rim)
+    return bulk_surface.relaxing(meshed(geometry, numerics), moduli, Pace.of(numerics), target.height, rim)
 
 
 def meshed(geometry: Geometry, numerics: Numerics) -> Recipe[ElasticBody]:

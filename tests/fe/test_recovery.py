@@ -98,7 +98,7 @@ def test_the_creep_under_the_pressure_on_the_axis_ends_where_the_path_does(law: 
     material = PRONY if law == "prony" else {"law": "maxwell", "E": 3e6, "eta": 6e3}
     scene = scene_of(material)
     solved = solve(scene, {"tolerance": 1e-3})
-    weights = half_space.surface(scene.material.nu, solved.numerics).operator.weights
+    weights = half_space.surface(scene.material.nu, solved.certified.numerics).operator.weights
     snapshots = solved.certified.march.snapshots
     # a pressure lifts the axis by 2/E* int p dr, Johnson (1985) Contact Mechanics (3.96a)
     lifts = [float((weights * s.contact_radius**2 * s.pressure) @ (1 / (np.pi * s.radii))) for s in snapshots]

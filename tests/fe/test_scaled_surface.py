@@ -12,9 +12,7 @@ import numpy as np
 import pytest
 
 import lumped
-import meshes
 from fe_contact.assembly.far_field import boussinesq
-from fe_contact.assembly.operators import surface_operator
 from fe_contact.bodies.memory import area_weights, graded
 from fe_contact.bodies.pressing import EDGE_WINDOW
 from fe_contact.budget.plan import plan
@@ -48,7 +46,7 @@ class Indentation:
 
 
 def surface(nu: float, elements: float = 4.0, order: int = 4, far_radius: float = 20.0) -> ScaledSurface:
-    return ScaledSurface(surface_operator(meshes.half_space(elements, far_radius), order, nu).operator)
+    return ScaledSurface(half_space._whole(nu, elements, order, far_radius).operator)
 
 
 def indent(
