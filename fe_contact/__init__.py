@@ -8,11 +8,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-if TYPE_CHECKING:
-    from pathlib import Path
+from fe_contact.threads import one_thread
 
+if TYPE_CHECKING:
     from fe_contact.studies.compare.study import Comparison
     from fe_contact.studies.sweep.table import SweepTable
     from fe_contact.studies.table1.study import Trial
@@ -53,7 +54,6 @@ def run(
     BadInput for what cannot be used, NotReached where no march came to an end.
     """
     from fe_contact.methods import simulate
-    from fe_contact.threads import one_thread
 
     known, table = _read(scene)
     with one_thread:
@@ -82,6 +82,7 @@ def indent(
     BadInput for depths and materials that cannot be, NotReached where contact does not settle.
     """
     from fe_contact.indentation import indent as press
+    from fe_contact.indentation import slowly
     from fe_contact.methods import settings
     from lumped import Scene
     from lumped.scene.indenter import Indenter
@@ -89,8 +90,7 @@ def indent(
 
     table: Table = {}
     if isinstance(scene, Scene):
-        shape, target, material, striker = vars(scene.geometry).values()
-        indenter = Indenter(shape, material, target, striker, scene.model, scene.name, scene.source)
+        indenter = slowly(scene)
     else:
         indenter, table = load_indenter(Indenter, scene)
     return press(indenter, tuple(depths), settings(table, tolerance, indenter.source), instant)
@@ -119,11 +119,8 @@ def compare(
     ------
     BadInput for an unknown law or a spoiled curve, and what :func:`run` raises.
     """
-    from pathlib import Path
-
     from fe_contact.methods import settings
     from fe_contact.studies.compare.study import compared
-    from fe_contact.threads import one_thread
     from lumped.laws import available
     from lumped.result.curve_file import read_curve
 
@@ -155,8 +152,6 @@ def fit(
     ------
     BadInput for a curve that cannot be one, NotReached where no search converges.
     """
-    from pathlib import Path
-
     from lumped import fit as fit_law
     from lumped.result.curve_file import read_curve
 
@@ -169,7 +164,6 @@ def table1(out: str | Path | None = None, jobs: int = 2) -> tuple[Trial, ...]:
 
     `out`: folder that keeps rows as they are found, None: a temporary one; `jobs`: processes. Raises NotReached.
     """
-    from pathlib import Path
     from tempfile import TemporaryDirectory
 
     from fe_contact.studies.table1.study import table1 as study
@@ -184,7 +178,6 @@ def tradeoff(scene: Scene | str | Path, quick: bool = False, out: str | Path | N
     `scene`: as for :func:`run`; `quick`: a quarter of the settings; `out`: folder that keeps what was measured. The
     ``verdict`` says in words what to use. Raises BadInput and NotReached.
     """
-    from pathlib import Path
     from tempfile import TemporaryDirectory
 
     from fe_contact.methods import settings
@@ -212,8 +205,6 @@ def plot(found: object, out: str | Path) -> tuple[Path, ...]:
     ------
     BadInput for anything else; a Result, History, Indentation or Fit has a ``plot()`` of its own, for a notebook.
     """
-    from pathlib import Path
-
     from fe_contact.studies.compare.chart import plot_comparison
     from fe_contact.studies.compare.study import Comparison
     from fe_contact.studies.history_chart import plot_history
@@ -277,7 +268,6 @@ def sweep(
     BadInput with every fault of the file; ExtraMissing where Dask is not installed; WorkerLost where processes that
     answer die again and again. What fails with a name in one case is no error, but that case's ``reasons``.
     """
-    from pathlib import Path
     from tempfile import TemporaryDirectory
 
     from fe_contact.studies.sweep.cases import load
@@ -326,7 +316,6 @@ def transfer(
     from fe_contact.methods import settings
     from fe_contact.studies.transfer.study import Asked
     from fe_contact.studies.transfer.study import transfer as run_transfer
-    from fe_contact.threads import one_thread
 
     values = {key: tuple(every) for key, every in (over or {}).items()}
     asked = Asked(tuple(laws), start or {}, values, calibrate, within, method)
@@ -357,11 +346,8 @@ def validate(
     ------
     BadInput for an unknown section, CannotWrite. A section that fails with a name is shown as failed.
     """
-    from pathlib import Path
-
     from fe_contact.studies.validate._study import validate as run_validate
     from fe_contact.studies.workers import checked_jobs
-    from fe_contact.threads import one_thread
 
     with one_thread:
         return run_validate(Path(out), quick, checked_jobs(jobs), resume, sections)

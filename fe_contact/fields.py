@@ -36,6 +36,7 @@ from fe_contact.assembly.operators import SurfaceOperator, WholeBody
 from fe_contact.bodies.pressing import BEYOND
 from fe_contact.budget.certify import Certified
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
+from fe_contact.contact.problem import ContactProblem
 from fe_contact.settings import Numerics
 from fe_contact.steppers.scaled_surface import ScaledSurface
 from fe_contact.steppers.steps import Snapshot
@@ -142,7 +143,8 @@ def _indented(
     operator = body.operator
     height = np.minimum(scene.profile.height(length * operator.points), BEYOND * length)
     enforcement = ENFORCEMENTS.get(numerics.enforcement)
-    solution = enforcement.enforce(surface.problem(depth - height, numerics.penalty, 0.0), operator.points < 1.0)
+    problem = ContactProblem(surface.pressed, depth - height, numerics.penalty)
+    solution = enforcement.enforce(problem, operator.points < 1.0)
     return np.asarray(body.solve(operator.trace.T @ (operator.weights * solution.pressure)))
 
 

@@ -30,6 +30,7 @@ from lumped.errors import BadInput, Fault
 from lumped.indentation import Indentation
 from lumped.numbers import Clock
 from lumped.scene.indenter import Indenter
+from lumped.scene.scene import Scene
 from lumped.shapes import Shape
 
 CAUSES = ("mesh", "penalty", "far_field")  # that a setting lessens
@@ -45,6 +46,13 @@ BISECTIONS = 40  # work: halvings of the place where undeformed surfaces cease t
 SMALL = 1e-3  # radius, in depths, from which the search for the overlap's end begins
 SCOUTING, SCOUTING_ORDER = 2.0, 2  # elements along the contact radius that tell how large contacts will be
 LEAST_SHARE, LARGEST_SHARE = 0.4, 2.0  # contact radius over the one at which the undeformed surfaces overlap
+
+
+def slowly(scene: Scene) -> Indenter:
+    """The bodies of a scene, without their motion."""
+    geometry = scene.geometry
+    return Indenter(geometry.shape, geometry.material, geometry.target, geometry.striker_material, scene.model,
+                    scene.name, scene.source)  # fmt: skip
 
 
 @one_thread

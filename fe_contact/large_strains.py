@@ -18,7 +18,7 @@ from fe_contact.budget import plan as statics
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import AIM
 from fe_contact.budget.solved import ImpactModel
-from fe_contact.indentation import COARSEST, indent, settings
+from fe_contact.indentation import COARSEST, indent, settings, slowly
 from fe_contact.progress import Progress, silent
 from fe_contact.settings import Given, check_kind, tolerance_of
 from fe_contact.solids.pressing import CORRECTED, Solid, check_large
@@ -31,7 +31,6 @@ from lumped.materials.energies.base import energy_of
 from lumped.numbers import Clock
 from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.result import UNITS, Result, largest_bar, provenance, unmet
-from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Answered, Scene
 from lumped.shapes._block import Block
 
@@ -98,7 +97,7 @@ def depth_reached(scene: Scene) -> float:
 
     The energy grows as a power of the depth, force x depth / energy.
     """
-    indenter, small = _slowly(scene), statics.scales(scene, statics.plan(scene, {}).numerics)
+    indenter, small = slowly(scene), statics.scales(scene, statics.plan(scene, {}).numerics)
     if isinstance(indenter.shape, Block) and indenter.shape.uniform:
         return small.peak_depth
     numerics, radius = settings({"elements_per_contact": COARSEST}, indenter.shape, large=True), small.contact_radius
@@ -122,13 +121,6 @@ def check_range(scene: Scene) -> None:
     material = scene.geometry.material
     if scene.model.finite and material.young.is_elastic and energy_of(material.hyperelastic).softens:
         depth_reached(scene)
-
-
-def _slowly(scene: Scene) -> Indenter:
-    """The same without its motion."""
-    geometry = scene.geometry
-    return Indenter(geometry.shape, geometry.material, geometry.target, geometry.striker_material, scene.model,
-                    scene.name, scene.source)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,7 +162,7 @@ def _known(scene: Scene, deepest: float, given: Given, progress: Progress) -> Kn
     """The curve up to a depth, m. Raises NotReached."""
     place = 0.5 - 0.5 * np.cos(np.pi * np.arange(DEPTHS) / (DEPTHS - 1))
     depths = deepest * SHALLOWEST ** (1.0 - place)
-    pressed = indent(_slowly(scene), tuple(depths.tolist()), given, progress=progress)
+    pressed = indent(slowly(scene), tuple(depths.tolist()), given, progress=progress)
     return KnownCurve(pressed, deepest, *_fitted(pressed, deepest, DEGREE))
 
 

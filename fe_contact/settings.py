@@ -9,7 +9,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from itertools import islice
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Self, TypeVar
 
 from lumped.errors import SHOWN_FAULTS, BadInput, Fault, as_number, nearest, shown
 from lumped.schema import Table
@@ -109,6 +109,9 @@ class Numerics:
     def as_dict(self) -> Table:
         """Plain data for ``result.json``."""
         return asdict(self)
+
+
+AnyNumerics = TypeVar("AnyNumerics", bound=Numerics)
 
 
 @dataclass(frozen=True)

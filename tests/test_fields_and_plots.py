@@ -15,7 +15,7 @@ from skfem import Basis
 
 import meshes
 from fe_contact.assembly.forms import isotropic
-from fe_contact.assembly.operators import ORDERS, element
+from fe_contact.assembly.operators import element
 from fe_contact.cli import main
 from fe_contact.fields import (
     STRESSES,
@@ -98,7 +98,7 @@ def test_stress_on_the_axis_is_hertz(steel: Case) -> None:
         assert np.abs(found - expected).max() < 5e-3
 
 
-@pytest.mark.parametrize("order", ORDERS)
+@pytest.mark.parametrize("order", [1, 2, 3, 4])
 def test_nodal_stress_is_exact_for_uniform_strain(order: int) -> None:
     """Also on the axis, where the hoop strain is 0/0."""
     basis = Basis(meshes.half_space(1, 3), element(order))
@@ -108,7 +108,7 @@ def test_nodal_stress_is_exact_for_uniform_strain(order: int) -> None:
     assert np.abs(nodal_stress(basis, displacement, law) - expected).max() < 1e-11
 
 
-@pytest.mark.parametrize("order", ORDERS)
+@pytest.mark.parametrize("order", [1, 2, 3, 4])
 def test_the_triangles_cover_every_element_once(order: int) -> None:
     basis = Basis(meshes.half_space(1, 3), element(order))
     triangles = subdivided(basis)

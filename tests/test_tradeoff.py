@@ -202,8 +202,8 @@ def test_every_point_builds_its_operators_again(scene: Scene, tmp_path: Path, mo
         built.append(arguments)
         return original(*arguments)
 
-    original = half_space.surface_operator
-    monkeypatch.setattr(half_space, "surface_operator", counted)
+    original = half_space._whole
+    monkeypatch.setattr(half_space, "_whole", counted)
     monkeypatch.setattr(study, "variations", lambda *_: iter([{"steps": 24}]))
     monkeypatch.setattr(study, "asked_laws", lambda *_: ())
     monkeypatch.setattr(study, "BRIEF", np.inf)

@@ -93,44 +93,39 @@ def polar_strain(basis: Basis, inner_radius: float) -> Array:
 def polar_stiffness(basis: Basis, law: Array, inner_radius: float) -> sparse.coo_matrix:
     """Stiffness matrix per unit length of both halves of a ring laid flat, see :func:`polar_strain`."""
     radius = inner_radius - np.asarray(basis.global_coordinates())[1]
-    weight = 2.0 * np.asarray(basis.dx) * radius / inner_radius
+    weight = volumes(basis, plane=True) * radius / inner_radius
     return _assembled(basis, law, polar_strain(basis, inner_radius), weight)
 
 
-def stiffness(basis: Basis, law: Array) -> sparse.coo_matrix:
-    """Stiffness matrix of an axisymmetric body, shape (2 N, 2 N), N/m.
+def volumes(basis: Basis, plane: bool = False) -> Array:
+    """Of the quadrature points, (elements, points): of a body of revolution, or per unit length of both halves of one
+    in plane strain.
+    """
+    areas = np.asarray(basis.dx)
+    return 2.0 * areas if plane else 2.0 * np.pi * np.asarray(basis.global_coordinates())[0] * areas
+
+
+def stiffness(basis: Basis, law: Array, plane: bool = False) -> sparse.coo_matrix:
+    """Stiffness matrix of an axisymmetric body, shape (2 N, 2 N), N/m; or of one in plane strain, see :func:`volumes`.
 
     Parameters
     ----------
     basis : scalar scikit-fem basis with N degrees of freedom.
     law : stress over strain, shape (4, 4), see :func:`isotropic`.
     """
-    radius = np.asarray(basis.global_coordinates())[0]
-    return _assembled(basis, law, axisymmetric_strain(basis), 2 * np.pi * radius * basis.dx)
+    strain = plane_strain(basis) if plane else axisymmetric_strain(basis)
+    return _assembled(basis, law, strain, volumes(basis, plane))
 
 
-def mass(basis: Basis) -> Array:
-    """Consistent mass of every element of an axisymmetric body of density one, (elements, 2 n, 2 n), m^3."""
-    return _mass(basis, 2 * np.pi * np.asarray(basis.global_coordinates())[0] * np.asarray(basis.dx))
-
-
-def plane_mass(basis: Basis) -> Array:
-    """The same per unit length of both halves of a body in plane strain, m^2."""
-    return _mass(basis, 2.0 * np.asarray(basis.dx))
-
-
-def _mass(basis: Basis, weight: Array) -> Array:
+def mass(basis: Basis, plane: bool = False) -> Array:
+    """Consistent mass of every element of such a body of density one, (elements, 2 n, 2 n)."""
+    weight = volumes(basis, plane)
     value = values(basis, weight.shape)
     scalar = np.einsum("eqi,eqj,eq->eij", value, value, weight, optimize=True)
     elements, functions, _ = scalar.shape
     local = np.zeros((elements, 2 * functions, 2 * functions))
     local[:, 0::2, 0::2] = local[:, 1::2, 1::2] = scalar
     return local
-
-
-def plane_stiffness(basis: Basis, law: Array) -> sparse.coo_matrix:
-    """Stiffness matrix per unit length of both halves of a body in plane strain; as :func:`stiffness`."""
-    return _assembled(basis, law, plane_strain(basis), 2.0 * np.asarray(basis.dx))
 
 
 def _assembled(basis: Basis, law: Array, strain: Array, weight: Array) -> sparse.coo_matrix:

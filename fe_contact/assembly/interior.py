@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, Protocol
+from typing import Any, Literal
 
 import numpy as np
 import scipy.sparse.linalg as linalg
@@ -16,16 +16,6 @@ from fe_contact.assembly.forms import Array, Basis, Indices, Matrix
 
 FACTORS = 160  # bytes a matrix entry: ten entries of the factors, each a number, its place and as much while they grow
 WORK_SPACE = 100e6  # bytes that BLAS and SuperLU take beside
-
-
-class Solve(Protocol):
-    """Displacement (2 N,) of the whole mesh under nodal forces (n,) on the zone; or of (n, m) loads at once."""
-
-    @property
-    def interior(self) -> Interior:
-        """What it solves, without the factors."""
-
-    def __call__(self, forces: Array) -> Array: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,36 +31,23 @@ class Interior:
     push: Matrix
     floating: Floating | None = None
 
-    @property
-    def interior(self) -> Interior:
-        """Itself."""
-        return self
+    def factorised(self) -> Callable[[Array], Array]:
+        """The same with its factors, as large as all the rest of a body and ten times more."""
+        solve = factorized(self.matrix)
 
-    def factorised(self) -> Factorised:
-        """The same with its factors."""
-        return Factorised(self, factorized(self.matrix))
+        def displacement(forces: Array) -> Array:
+            load = -(self.push @ forces)  # pressure pushes into the body
+            if self.floating is not None:
+                load = self.floating.balanced(load)
+            answer = np.zeros_like(load)
+            answer[self.free] = solve(load[self.free])
+            return answer if self.floating is None else self.floating.centred(answer)
+
+        return displacement
 
     def __call__(self, forces: Array) -> Array:
-        """See :class:`Solve`."""
+        """Displacement (2 N,) of the whole mesh under nodal forces (n,) on the zone; or of (n, m) loads at once."""
         return self.factorised()(forces)
-
-
-@dataclass(frozen=True, eq=False)
-class Factorised:
-    """An interior with its factors: as large as all the rest of a body and ten times more."""
-
-    interior: Interior
-    solve: Callable[[Array], Array]
-
-    def __call__(self, forces: Array) -> Array:
-        """See :class:`Solve`."""
-        body = self.interior
-        load = -(body.push @ forces)  # pressure pushes into the body
-        if body.floating is not None:
-            load = body.floating.balanced(load)
-        answer = np.zeros_like(load)
-        answer[body.free] = self.solve(load[body.free])
-        return answer if body.floating is None else body.floating.centred(answer)
 
 
 def factorized(matrix: Matrix, ordered: bool = False) -> Callable[[Array], Array]:

@@ -18,16 +18,15 @@ import scipy.sparse as sparse
 from fe_contact.assembly.cache import Recipe
 from fe_contact.assembly.disk_cache import on_disk
 from fe_contact.assembly.far_field import plane_robin, robin
-from fe_contact.assembly.forms import Array, Basis, Indices, Matrix, elastic, isotropic, plane_stiffness, stiffness
-from fe_contact.assembly.interior import Floating, Interior, Solve
-from fe_contact.assembly.surface import Surface, flat, trace_between
+from fe_contact.assembly.forms import Array, Basis, Indices, Matrix, elastic, isotropic, stiffness
+from fe_contact.assembly.interior import Floating, Interior
+from fe_contact.assembly.surface import Surface, trace_between
 from fe_contact.errors import BodyTooFine
 from meshes.errors import MeshTooLarge
 
 if TYPE_CHECKING:
-    from skfem import Element, MeshTri
+    from skfem import Element
 
-ORDERS = (1, 2, 3, 4)  # of triangles
 MOST_UNKNOWNS = 200_000  # of one body: its factors take a gigabyte and half a minute
 SOLVED_AT_ONCE = 32  # right-hand sides: more of them leave the processor's cache
 
@@ -114,7 +113,7 @@ class WholeBody:
 
     operator: SurfaceOperator
     basis: Basis
-    solve: Solve
+    solve: Interior
     work: Array | None
 
 
@@ -141,22 +140,6 @@ def basis_on(mesh: Any, order: int) -> Basis:
     if unknowns > MOST_UNKNOWNS:
         raise BodyTooFine(f"a body of {unknowns} unknowns", f"accepted up to {MOST_UNKNOWNS}")
     return CellBasis(mesh, element(order), intorder=2 * order)
-
-
-def surface_operator(mesh: MeshTri, order: int, poisson: float) -> WholeBody:
-    """Assemble, factorise once and condense the half-space on ``mesh`` to its contact zone.
-
-    Parameters
-    ----------
-    mesh : boundaries ``surface``, ``axis``, ``far``; contact radius 1.
-    order : element order, 1 to 4.
-    poisson : Poisson's ratio.
-
-    Raises BodyTooFine for more unknowns than is bearable.
-    """
-    basis = basis_on(mesh, order)
-    fixed = 2 * basis.get_dofs("axis").flatten()
-    return condensed(basis, system_matrix(basis, poisson), fixed, poisson, flat(basis))
 
 
 def condensed(
@@ -209,7 +192,7 @@ def condensed(
 
 
 def _influence(
-    displacement: Solve, normal: Matrix, watch: Matrix, loaded: int, worked: Matrix
+    displacement: Callable[[Array], Array], normal: Matrix, watch: Matrix, loaded: int, worked: Matrix
 ) -> tuple[Array, Array | None, Array | None]:
     """Inward displacement of the surface nodes, (n_s, loaded), and of what is watched, (loaded,), under unit forces;
     work of a stiffness, (loaded, loaded).
@@ -238,10 +221,8 @@ def system_matrix(basis: Basis, poisson: float, ends: tuple[str, ...] = ("far",)
 
     ``ends``: boundaries beyond which the half-space goes on, or, in plane strain, the half-plane.
     """
-    law, outside = isotropic(1 - poisson**2, poisson), boundary(basis, ends)
-    if plane:
-        return (plane_stiffness(basis, law) + plane_robin(outside, poisson)).tocsc()
-    return (stiffness(basis, law) + robin(outside, poisson)).tocsc()
+    outside = (plane_robin if plane else robin)(boundary(basis, ends), poisson)
+    return (stiffness(basis, isotropic(1 - poisson**2, poisson), plane) + outside).tocsc()
 
 
 def boundary(basis: Basis, ends: tuple[str, ...]) -> Basis:
@@ -265,6 +246,17 @@ class ElasticBody:
     fixed: Indices
     surface: Surface
     floating: Floating | None = None
+
+    @classmethod
+    def alone(
+        cls, basis: Basis, fixed: Indices, surface: Surface, plane: bool = False, floating: Floating | None = None
+    ) -> ElasticBody:
+        """A body that ends with its mesh, of revolution or in ``plane`` strain."""
+
+        def matrix(bulk: float, shear: float) -> Matrix:
+            return stiffness(basis, elastic(bulk, shear), plane)
+
+        return cls(basis, matrix, fixed, surface, floating)
 
     def condensed(self, poisson: float, worked: Matrix = None) -> WholeBody:
         """With this Poisson's ratio, for E* = 1; see :func:`condensed`."""
@@ -294,16 +286,6 @@ class SolidMesh:
 def operator_of(body: Recipe[ElasticBody], poisson: float) -> SurfaceOperator:
     """What the contact surface knows of a body with this Poisson's ratio, for E* = 1."""
     return body.follow().condensed(poisson).operator
-
-
-def axisymmetric(basis: Basis, bulk: float, shear: float) -> Matrix:
-    """Stiffness of a body of revolution that ends with its mesh, sparse (2 N, 2 N)."""
-    return stiffness(basis, elastic(bulk, shear))
-
-
-def plane(basis: Basis, bulk: float, shear: float) -> Matrix:
-    """The same in plane strain, both halves."""
-    return plane_stiffness(basis, elastic(bulk, shear))
 
 
 def moduli(poisson: float) -> tuple[float, float]:

@@ -21,7 +21,7 @@ from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import SurfaceOperator
 from fe_contact.bodies.memory import StepLaw, SurfaceMemory, step_law
 from fe_contact.bodies.modes import Modes
-from fe_contact.bodies.offer import Recalled, Whole
+from fe_contact.bodies.offer import Offer, Whole
 from fe_contact.contact.problem import PressedSurface
 from fe_contact.schemes.base import MemoryScheme
 from lumped.materials import Material, Relaxation
@@ -89,10 +89,11 @@ class BulkBody(Whole):
         """Of the elastic body at one of the ratios: points and weights are those of all."""
         return self.modes.operator
 
-    def recalled(self, memory: BulkMemory, length: float) -> Recalled:
-        """What its past makes of a step of a length, s."""
+    def recalled(self, memory: BulkMemory, length: float) -> Offer:
+        """What its past makes of a step of a length, s, at the nodes."""
         law = self._law(length)
-        return Recalled(law.contact_modulus, self._past(memory, law), _pressed(self.modes, law.ratio))
+        past = law.contact_modulus * (self.modes.shape @ (self._carried(memory, law) / self._now(law)))
+        return Offer(length, law.contact_modulus, past, _pressed(self.modes, law.ratio))
 
     def pushed(self, memory: BulkMemory, length: float, load: Array) -> BulkMemory:
         """The memory after a step of a length, s, under forces at the nodes, (n,)."""
@@ -108,15 +109,11 @@ class BulkBody(Whole):
         """Elastic energy in all springs of both networks, J."""
         return memory.volume.stored(self.moduli.bulk) + memory.shear.stored(self.moduli.shear)
 
-    def dissipated(self, before: BulkMemory, after: BulkMemory, length: float) -> float:
-        """Heat of a step in both networks, J."""
-        volume = before.volume.dissipated(after.volume, self.moduli.bulk, length)
-        return volume + before.shear.dissipated(after.shear, self.moduli.shear, length)
-
-    def lost(self, before: BulkMemory, after: BulkMemory, length: float) -> float:
-        """Of the work in a step on both networks, what the scheme leaves unaccounted for, J."""
-        volume = before.volume.lost(after.volume, self.moduli.bulk, self.scheme, length)
-        return volume + before.shear.lost(after.shear, self.moduli.shear, self.scheme, length)
+    def spent(self, before: BulkMemory, after: BulkMemory, length: float) -> tuple[float, float]:
+        """Heat of a step in both networks, J, and of the work on them what the scheme leaves unaccounted for, J."""
+        pairs = list(zip(before, after, self.moduli, strict=True))
+        heat = sum(early.dissipated(late, modulus, length) for early, late, modulus in pairs)
+        return heat, sum(early.lost(late, modulus, self.scheme, length) for early, late, modulus in pairs)
 
     def _law(self, length: float) -> BulkLaw:
         return BulkLaw(*(step_law(modulus, self.scheme, length) for modulus in self.moduli))
@@ -124,10 +121,6 @@ class BulkBody(Whole):
     def _now(self, law: BulkLaw) -> Array:
         """Stiffness of the modes against new strain, (m,), Pa."""
         return self.modes.volume * law.bulk.now + self.modes.shear * law.shear.now
-
-    def _past(self, memory: BulkMemory, law: BulkLaw) -> Array:
-        """What the past adds to displacement x contact modulus at the nodes, (n,), Pa m."""
-        return np.asarray(law.contact_modulus * (self.modes.shape @ (self._carried(memory, law) / self._now(law))))
 
     def _carried(self, memory: BulkMemory, law: BulkLaw) -> Array:
         """Force on the modes, (m,), that the past fixes."""

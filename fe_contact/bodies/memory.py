@@ -22,7 +22,7 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import SurfaceOperator
-from fe_contact.bodies.offer import Recalled, Whole
+from fe_contact.bodies.offer import Offer, Whole
 from fe_contact.contact.problem import PressedSurface
 from fe_contact.schemes import galerkin
 from fe_contact.schemes.base import MemoryScheme
@@ -160,8 +160,28 @@ def product(weights: Array, first: Array, second: Array) -> Array:
     return np.asarray(0.5 * (first[..., 0, :] * second[..., -1, :] + first[..., -1, :] * second[..., 0, :]) @ weights)
 
 
+class OneNetwork:
+    """Steps by a ``scheme``, and their energies, of what remembers by its surface alone, of one ``relaxation``."""
+
+    relaxation: Relaxation
+    scheme: MemoryScheme
+
+    def law(self, length: float) -> StepLaw:
+        """Numbers of a step of a length, s."""
+        return step_law(self.relaxation, self.scheme, length)
+
+    def stored(self, memory: SurfaceMemory) -> float:
+        """Elastic energy in all springs, J."""
+        return memory.stored(self.relaxation)
+
+    def spent(self, before: SurfaceMemory, after: SurfaceMemory, length: float) -> tuple[float, float]:
+        """Heat of a step, J, and of the work in it what the scheme leaves unaccounted for, J."""
+        lost = before.lost(after, self.relaxation, self.scheme, length)
+        return before.dissipated(after, self.relaxation, length), lost
+
+
 @dataclass(frozen=True, eq=False)
-class SurfaceBody(Whole):
+class SurfaceBody(OneNetwork, Whole):
     """Contracts of :class:`fe_contact.bodies.offer.Body` and ``Half``; ``scale``, m, is the mesh's unit of length.
 
     ``share``: its stiffness over that of its operator.
@@ -179,14 +199,14 @@ class SurfaceBody(Whole):
         nodes = np.ones(len(self.operator.stiffness))
         return SurfaceMemory.at_rest(nodes, self.relaxation, fields=2)
 
-    def recalled(self, memory: SurfaceMemory, length: float) -> Recalled:
-        """What its past makes of a step of a length, s."""
-        law = self._law(length)
-        return Recalled(law.now, memory.carried(law)[0], self.pressed)
+    def recalled(self, memory: SurfaceMemory, length: float) -> Offer:
+        """What its past makes of a step of a length, s, at the nodes."""
+        law = self.law(length)
+        return Offer(length, law.now, memory.carried(law)[0], self.pressed)
 
     def pushed(self, memory: SurfaceMemory, length: float, load: Array) -> SurfaceMemory:
         """The memory after a step of a length, s, under forces at the nodes, (n,)."""
-        law = self._law(length)
+        law = self.law(length)
         displacement = self.operator.compliance @ load / self.share
         force = load * self.scale ** (self.operator.dimension - 2)
         return memory.advanced(law, (np.array([displacement, force]) - memory.carried(law)) / law.now)
@@ -194,18 +214,3 @@ class SurfaceBody(Whole):
     def sunk(self, memory: SurfaceMemory) -> Array:
         """Inward displacement of the nodes, (n,), m."""
         return np.asarray(memory.strain[0])
-
-    def stored(self, memory: SurfaceMemory) -> float:
-        """Elastic energy in all springs, J."""
-        return memory.stored(self.relaxation)
-
-    def dissipated(self, before: SurfaceMemory, after: SurfaceMemory, length: float) -> float:
-        """Heat of a step, J."""
-        return before.dissipated(after, self.relaxation, length)
-
-    def lost(self, before: SurfaceMemory, after: SurfaceMemory, length: float) -> float:
-        """Of the work in a step, what the scheme leaves unaccounted for, J."""
-        return before.lost(after, self.relaxation, self.scheme, length)
-
-    def _law(self, length: float) -> StepLaw:
-        return step_law(self.relaxation, self.scheme, length)

@@ -16,21 +16,11 @@ Memory: TypeAlias = Any  # what a body carries from step to step, each kind its 
 class Offer(NamedTuple):
     """A step of a ``length``, s, as contact sees it: displacement x ``now`` = unit compliance x forces - ``past``.
 
-    ``now``: contact modulus of the step, Pa; ``past`` (q,) at the quadrature points; ``surface``: for unit modulus.
+    ``now``: contact modulus of the step, Pa; ``past`` (q,) at the quadrature points, or (n,) at the contact zone's own
+    nodes; ``surface``: for unit modulus.
     """
 
     length: float
-    now: float
-    past: Array
-    surface: PressedSurface
-
-
-class Recalled(NamedTuple):
-    """A step at the contact zone's own n nodes: displacement x ``now`` = unit compliance x forces - ``past`` (n,).
-
-    ``now``: contact modulus of the step, Pa; ``surface``: for unit modulus.
-    """
-
     now: float
     past: Array
     surface: PressedSurface
@@ -45,18 +35,15 @@ class Remembering(Protocol):
     def stored(self, memory: Memory) -> float:
         """Elastic energy in all springs, J."""
 
-    def dissipated(self, before: Memory, after: Memory, length: float) -> float:
-        """Heat of a step, J."""
-
-    def lost(self, before: Memory, after: Memory, length: float) -> float:
-        """Of the work in a step, what the scheme leaves unaccounted for, J."""
+    def spent(self, before: Memory, after: Memory, length: float) -> tuple[float, float]:
+        """Heat of a step, J, and of the work in it what the scheme leaves unaccounted for, J."""
 
 
 class Half(Remembering, Protocol):
     """One of the bodies under a common pressure, by the nodes of its own contact zone."""
 
-    def recalled(self, memory: Memory, length: float) -> Recalled:
-        """What its past makes of a step of a length, s."""
+    def recalled(self, memory: Memory, length: float) -> Offer:
+        """What its past makes of a step of a length, s, at the nodes."""
 
     def pushed(self, memory: Memory, length: float, load: Array) -> Memory:
         """The memory after a step of a length, s, under forces at the nodes, (n,)."""
@@ -78,7 +65,7 @@ class Body(Remembering, Protocol):
         """Inward displacement of the surface at the quadrature points, (q,), m."""
 
 
-class Whole:
+class Whole(Half, Protocol):
     """A half that may be all there is: what its nodes know, by the points of its ``operator``."""
 
     if TYPE_CHECKING:  # members have it as a field or as a property
@@ -86,22 +73,10 @@ class Whole:
         @property
         def operator(self) -> SurfaceOperator: ...
 
-    def recalled(self, memory: Memory, length: float) -> Recalled:
-        """See :class:`Half`."""
-        raise NotImplementedError
-
-    def pushed(self, memory: Memory, length: float, load: Array) -> Memory:
-        """See :class:`Half`."""
-        raise NotImplementedError
-
-    def sunk(self, memory: Memory) -> Array:
-        """See :class:`Half`."""
-        raise NotImplementedError
-
     def offer(self, memory: Memory, length: float) -> Offer:
         """What contact meets in a step of a length, s."""
-        now, past, surface = self.recalled(memory, length)
-        return Offer(length, now, self.operator.trace @ past, surface)
+        at_nodes = self.recalled(memory, length)
+        return at_nodes._replace(past=self.operator.trace @ at_nodes.past)
 
     def after(self, memory: Memory, offer: Offer, pressure: Array) -> tuple[Memory, float]:
         """The memory after the step under a pressure (q,), and the axis' elastic displacement times modulus."""

@@ -87,9 +87,6 @@ class Meshed(Protocol):
     def pressed(self) -> PressedSurface:
         """What contact knows of it."""
 
-    def problem(self, overlap: Array, penalty: float, yielding: float | Array) -> ContactProblem:
-        """Contact problem on the unit mesh, of free overlaps times modulus (q,)."""
-
 
 class Still(Protocol):
     """A body at rest, ready to be pressed by one profile."""
@@ -253,7 +250,8 @@ def _enforced(
 ) -> tuple[ContactSolution, int]:
     """The contact problem on the mesh scaled by ``scale``, m; and how many solves it took."""
     enforcement = ENFORCEMENTS.get(numerics.enforcement)
-    problem = surface.problem(np.maximum(overlap, -BEYOND * scale), numerics.penalty, surface.operator.yielding)
+    free, yielding = np.maximum(overlap, -BEYOND * scale), surface.operator.yielding
+    problem = ContactProblem(surface.pressed, free, numerics.penalty, yielding)
     return enforcement.enforce(problem, touching), enforcement.solves
 
 
@@ -338,15 +336,9 @@ class Zone:
     smallest: float
 
     @classmethod
-    def of(cls, radii: Array) -> Zone:
+    def of(cls, radii: Array, margin: float = MARGIN) -> Zone:
         """Of contact radii, m."""
-        reference = MARGIN * float(radii.max())
-        return cls(reference, float(radii.min()) / reference)
-
-    @classmethod
-    def finite(cls, radii: Array) -> Zone:
-        """The same of contact radii, m, that large strains change by little."""
-        reference = FINITE_MARGIN * float(radii.max())
+        reference = margin * float(radii.max())
         return cls(reference, float(radii.min()) / reference)
 
     @classmethod
@@ -367,6 +359,12 @@ def thickness_over(width: float, thickness: float) -> float:
 def smallest_struck(shape: Shape) -> float:
     """Contact radius over the largest one below which elements grow no finer: F ~ a^3 of a sphere, else a^2."""
     return math.pow(FAINT, 1.0 / 3.0 if shape.tip_radius is not None and not shape.plane else 0.5)
+
+
+def struck_ends(shape: Shape, numerics: Numerics) -> tuple[float, float]:
+    """Radii, m, between which the contacts of an impact end, of the largest that a mesh is made for."""
+    largest = numerics.contact_radius / MARGIN
+    return smallest_struck(shape) * largest, largest
 
 
 def held(basis: Basis, along: tuple[str, ...], across: tuple[str, ...]) -> Indices:

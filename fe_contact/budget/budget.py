@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -62,11 +62,16 @@ class TotalWork:
 
 
 class Solution(Protocol):
-    """An impact, or several, found with some settings, and its bars: all that a result is made of."""
+    """An impact, or several, found with some settings, and its bars: all that a result is made of.
 
-    @property
-    def numerics(self) -> Numerics:
-        """The settings of the finest run."""
+    One contact, unless a kind of them says more.
+    """
+
+    if TYPE_CHECKING:  # kinds have it as a field or as a property
+
+        @property
+        def numerics(self) -> Numerics:
+            """The settings of the finest run."""
 
     @property
     def separated(self) -> bool:
@@ -79,14 +84,17 @@ class Solution(Protocol):
     @property
     def parts(self) -> tuple[Mapping[str, Quantity], ...]:
         """The same of every contact that the tolerance rules."""
+        return (self.quantities,)
 
     @property
     def contacts(self) -> Contacts:
-        """Every contact, where there may be several."""
+        """Every contact, where there may be several; none where a single one is the whole history."""
+        return ()
 
     @property
     def grounded(self) -> Grounded | None:
         """Why there are fewer contacts than were asked for, None: there are not."""
+        return None
 
     @property
     def energy(self) -> Mapping[str, float]:
@@ -95,6 +103,7 @@ class Solution(Protocol):
     @property
     def energy_errors(self) -> Mapping[str, float]:
         """Bars of its terms, J, where they are known."""
+        return {}
 
     @property
     def counted(self) -> Mapping[str, int]:
@@ -108,7 +117,7 @@ class Solution(Protocol):
 
 
 @dataclass(frozen=True)
-class Budget:
+class Budget(Solution):
     """A contact as a curve with what each setting contributes to its error.
 
     ``march`` is the finest run behind it, ``work`` that of all runs together.
@@ -133,20 +142,6 @@ class Budget:
             name: Quantity(values[name], None if values[name] is None else self.total(name), unit)
             for name, unit in UNITS.items()
         }
-
-    @property
-    def parts(self) -> tuple[Mapping[str, Quantity], ...]:
-        """Its own quantities."""
-        return (self.quantities,)
-
-    @property
-    def contacts(self) -> Contacts:
-        """None: a single one is the whole history."""
-        return ()
-
-    @property
-    def grounded(self) -> None:
-        """Nothing is missing."""
 
     @property
     def energy(self) -> Mapping[str, float]:

@@ -36,7 +36,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -50,7 +50,7 @@ from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.errors import ContactTooBrief
 from fe_contact.progress import Count, Progress, silent
 from fe_contact.schemes.base import SCHEMES
-from fe_contact.settings import Numerics
+from fe_contact.settings import AnyNumerics, Numerics
 from fe_contact.steppers.flat_end import FlatEnd
 from fe_contact.steppers.steps import Strike
 from fe_contact.steppers.struck import Deformable, Struck
@@ -87,7 +87,6 @@ ASYMPTOTIC = 1e-2  # of duration and first speed: so much the fewest steps may e
 NEARLY = 0.8  # share of the expected ratio that the durations must show: they stand for themselves alone
 ABOUT_A_STEP = (0.4, 9.0)  # step over relaxation time: outside, its weight in the step is within 1/8 of a power of it
 
-AnyNumerics = TypeVar("AnyNumerics", bound=Numerics)
 Read = Callable[[int, Numerics], Curve | None]  # one contact of a run
 
 
@@ -152,7 +151,7 @@ def _judged(runs: Runs, read: Read, number: int, numerics: Numerics, alone: bool
     by_steps = swings or steps.jitter_falls
     changes: dict[str, Causes] = {
         "mesh": (by_mesh, *(() if by_steps else steps.jitter)),
-        "penalty": (_variation(curve(pressed), curve(penalty), factor(LEAST_ORDER["penalty"], stiffer)),),
+        "penalty": (Variation.between(curve(pressed), curve(penalty), factor(LEAST_ORDER["penalty"], stiffer)),),
         "time_step": (*steps.changes, *(steps.jitter if by_steps else ())),
         "far_field": _far_field(runs, curve, steps.value, cheap, mesh, alone),
     }
@@ -169,7 +168,7 @@ def _by_mesh(
     """Settings of another mesh, and what it changes; ``weights`` of one that stays, where the force jitters."""
     meshed = _judging(numerics, cheap, "mesh", not follows_contact)
     mesh, trusted = other_mesh(meshed) if follows_contact else other_mesh(meshed, MESH_ORDER_ANYWHERE)
-    change = partial(_variation, curve(meshed), curve(mesh), trusted)
+    change = partial(Variation.between, curve(meshed), curve(mesh), trusted)
     if follows_contact:
         return mesh, change()
     jittery = {"weights": weights, "since": DAMPED_SINCE} if weights else {}
@@ -220,7 +219,7 @@ def _far_field(
         return (Softening(value, factor(order, farther) * compliance_change(surface, other)),)
     if runs.surface(varied) is runs.surface(mesh):
         return ()
-    return (_variation(curve(mesh), curve(varied), factor(order, farther)),)
+    return (Variation.between(curve(mesh), curve(varied), factor(order, farther)),)
 
 
 @dataclass(frozen=True)
@@ -294,11 +293,6 @@ def _end_alike(*curves: Curve) -> bool:
     """Whether none separates or all do, and at one time: too long a step misses a graze under gravity, not the next."""
     durations = [curve.duration for curve in curves]
     return len({curve.separated for curve in curves}) == 1 and max(durations) <= MOST_APART * min(durations)
-
-
-def _variation(first: Curve | None, second: Curve | None, trusted: float, **more: Any) -> Variation | None:
-    """Between settings, ``trusted`` so many times as the error of the first; ``more``: as a variation takes it."""
-    return None if first is None or second is None else Variation(first, second, trusted, **more)
 
 
 def other_setting(numerics: AnyNumerics, key: str, least: float | None = None) -> tuple[AnyNumerics, bool]:

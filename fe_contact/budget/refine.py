@@ -16,7 +16,7 @@ import numpy as np
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import SETTING
 from fe_contact.errors import MemoryTooSmall
-from fe_contact.settings import RANGES, Numerics
+from fe_contact.settings import RANGES, AnyNumerics, Numerics
 from lumped.errors import NotReached
 from lumped.result.result import LedgerEntry
 
@@ -26,7 +26,6 @@ FACTOR = {"mesh": 1.5, "penalty": 4, "time_step": 2, "far_field": 2}  # by which
 AIM = 0.9  # of the tolerance: predictions err too
 
 Found = TypeVar("Found")
-AnyNumerics = TypeVar("AnyNumerics", bound=Numerics)
 
 
 class Finer(NamedTuple):

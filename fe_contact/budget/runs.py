@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import Generic, TypeVar
+from typing import Generic
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import TotalWork
@@ -14,7 +14,7 @@ from fe_contact.budget.variation import calmest, calmest_at_corners
 from fe_contact.march.impact import march
 from fe_contact.march.impacts import Followed, SurfaceBouncer, follow
 from fe_contact.progress import Counted, uncounted
-from fe_contact.settings import RANGES, Numerics
+from fe_contact.settings import RANGES, AnyNumerics, Numerics
 from fe_contact.steppers.flat_end import FlatEnd
 from fe_contact.steppers.steps import Strike, Work
 from fe_contact.steppers.struck import Deformable, Struck
@@ -25,8 +25,6 @@ from lumped.scene.geometry import Geometry
 PILOT_STEPS = 24  # of a march that only places the steps of others
 PLACED = 0.05  # share by which a contact may last longer, or less, than was expected
 PLACINGS = 4  # marches of few steps that look for its end, where an estimate is out by an order
-
-AnyNumerics = TypeVar("AnyNumerics", bound=Numerics)
 
 
 def operations(work: TotalWork, finest: Struck) -> float:

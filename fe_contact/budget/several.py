@@ -15,7 +15,7 @@ from typing import Any, Self
 import numpy as np
 
 from fe_contact.assembly.forms import Array
-from fe_contact.budget.budget import CAUSES, Budget, Causes, Contacts, TotalWork
+from fe_contact.budget.budget import CAUSES, Budget, Causes, Contacts, Solution, TotalWork
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.variation import Softening, Variation
 from fe_contact.march.impacts import Followed, Grounded
@@ -61,7 +61,7 @@ class Several(Budget):
 
 
 @dataclass(frozen=True)
-class Row:
+class Row(Solution):
     """All contacts as one: one history through the flights between them, one account of energy."""
 
     several: Several

@@ -15,7 +15,7 @@ from fe_contact.budget.refine import ImpactWay, refine
 from fe_contact.budget.several import Row, Several
 from fe_contact.march.impacts import UNFOLLOWED
 from fe_contact.progress import Count, Progress
-from fe_contact.settings import RANGES, Given, Numerics
+from fe_contact.settings import RANGES, Given
 from lumped.numbers import Clock
 from lumped.progress import counting_steps
 from lumped.result.result import UNITS, IndentationLeft, Result, largest_bar, provenance, unmet
@@ -42,11 +42,6 @@ class SolvedBy(Generic[Answer]):
     certified: Answer
     timing: Mapping[str, float]
     refused: str
-
-    @property
-    def numerics(self) -> Numerics:
-        """The settings it ended with."""
-        return self.certified.numerics
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -39,6 +40,12 @@ def factor(order: float, finer: bool) -> float:
     return SAFETY * (2**order if finer else 1) / (2**order - 1)
 
 
+def largest_around(values: Array, width: int) -> Array:
+    """The largest of values (n,) up to so many places away, at each."""
+    padded = np.pad(values, width, mode="edge")
+    return np.asarray(np.lib.stride_tricks.sliding_window_view(padded, 2 * width + 1).max(axis=1))
+
+
 @dataclass(frozen=True)
 class Variation:
     """Two curves that differ in one setting, and the factor that turns their difference into an error.
@@ -57,6 +64,11 @@ class Variation:
     since: float = LATE
     near: float = TOP
     creeps: bool = False
+
+    @classmethod
+    def between(cls, first: Curve | None, second: Curve | None, trusted: float, **more: Any) -> Self | None:
+        """With ``trusted`` as factor, and ``more`` as it takes it; None where a run of either setting failed."""
+        return None if first is None or second is None else cls(first, second, trusted, **more)
 
     @cached_property
     def errors(self) -> dict[str, float]:
@@ -105,9 +117,7 @@ class Variation:
         its last step, which no later one evens out.
         """
         places, change = self._pointwise
-        width = round(SMOOTHING * len(change))
-        padded = np.pad(change, width, mode="edge")
-        around = np.lib.stride_tricks.sliding_window_view(padded, 2 * width + 1).max(axis=1)
+        around = largest_around(change, round(SMOOTHING * len(change)))
         first_step = self.second.duration * self.second.x[1] ** 2
         resolved = time > (first_step if self.unresolved is None else self.unresolved)
         whole = ~resolved | self._about_turn(time)

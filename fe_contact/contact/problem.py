@@ -165,6 +165,7 @@ def factorised(matrix: Array) -> Callable[[Array], Array]:
 class ContactProblem:
     """A surface, its free overlap (q,), the penalty stiffness, and the striker's retreat per force, 0 held fixed.
 
+    On a unit mesh overlap and retreat count times the modulus, and the penalty in units of it over the contact radius.
     ``yielding`` (q,): per force at each point, on surfaces that do not recur; so nearly alike where points touch that
     the energy's slope is Newton's residual all the same.
     """

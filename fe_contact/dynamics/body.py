@@ -168,11 +168,6 @@ class BodyWithMass:
         """Number of degrees of freedom."""
         return int(self.rigid.size)
 
-    @property
-    def is_elastic(self) -> bool:
-        """Whether no part has a memory or a viscosity."""
-        return all(part.relaxation.is_elastic for part in self.parts)
-
     @cached_property
     def inertia(self) -> Matrix:
         """All of the mass, sparse (N, N)."""

@@ -346,7 +346,7 @@ def _radiated(body: BodyWithMass, before: BodyState, after: BodyState, step: flo
 
 def _of_inertia(scheme: Scheme, before: BodyState, after: BodyState, step: float) -> float:
     """Loss by the balance of inertia."""
-    alpha_m, _, beta, gamma = scheme
+    alpha_m, _, beta, gamma, _ = scheme
     change, mean = after.acceleration - before.acceleration, (after.acceleration + before.acceleration) / 2
     pushed = after.pushed[2] - before.pushed[2]
     swift = (before.velocity + after.velocity) / 2

@@ -154,7 +154,7 @@ class ImplicitStepper:
         return self.solve(self._known(state) + self.scheme.alpha_f * self.body.pressing.load(state.pressure))
 
     def _effective(self) -> Matrix:
-        body, (alpha_m, alpha_f, beta, gamma), dt = self.body, self.scheme, self.step
+        body, (alpha_m, alpha_f, beta, gamma, _), dt = self.body, self.scheme, self.step
         matrix = (1 - alpha_m) / (beta * dt**2) * body.inertia
         for part, law in zip(body.parts, self.laws, strict=True):
             matrix = matrix + ((1 - alpha_f) * law.now + float(law.late @ law.gain)) * part.stiffness
@@ -164,7 +164,7 @@ class ImplicitStepper:
 
     def _known(self, state: BodyState) -> Array:
         """Forces that the past fixes, (N,): those of a step in which nothing moves."""
-        body, (alpha_m, alpha_f, _, _) = self.body, self.scheme
+        body, (alpha_m, alpha_f, *_) = self.body, self.scheme
         forces = body.weight - ((1 - alpha_m) * self._onwards[2] @ state.pushed + alpha_m * state.pushed[2])
         for part, law, pulls in zip(body.parts, self.laws, state.pulls, strict=True):
             held = (1 - alpha_f) * part.past(law, pulls[0], pulls[1:])
@@ -216,7 +216,7 @@ def _newmark(scheme: Scheme, dt: float) -> tuple[Array, Array]:
     """What displacement, velocity and acceleration at a step's end owe to those at its start, (3, 3), and to the
     increment of the displacement, (3,).
     """
-    _, _, beta, gamma = scheme
+    _, _, beta, gamma, _ = scheme
     late = np.array([0.0, -1.0 / (beta * dt), 1.0 - 0.5 / beta])
     faster = np.array([0.0, 1.0, dt * (1.0 - gamma)]) + gamma * dt * late
     return np.array([[1.0, 0.0, 0.0], faster, late]), np.array([1.0, gamma / (beta * dt), 1.0 / (beta * dt**2)])

@@ -71,9 +71,8 @@ class Spent(NamedTuple):
     @classmethod
     def of(cls, stepper: Stepping, before: State, step: Step) -> Spent:
         """Of a step from a state that still has its memory."""
-        first, then, length = before.memory, step.state.memory, step.length
-        lost = stepper.lost(first, then, length)
-        return cls(stepper.dissipated(first, then, length), lost, stepper.between(before, step))
+        heat, lost = stepper.spent(before.memory, step.state.memory, step.length)
+        return cls(heat, lost, stepper.between(before, step))
 
 
 @dataclass(frozen=True, eq=False)

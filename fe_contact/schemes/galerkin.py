@@ -25,17 +25,8 @@ def weights(moduli: Array, ratios: Array) -> tuple[Array, Array]:
     ramp = (1 - fade) / ratios
     small = ratios < SERIES_BELOW
     if small.any():  # the difference would cancel
-        ramp[small] = _ramp(ratios[small])
+        ramp[small] = np.polyval(SERIES, ratios[small])
     return moduli * ramp, moduli * fade
-
-
-def _ramp(ratios: Array) -> Array:
-    """(x - 1 + exp(-x)) / x^2 by its series."""
-    total = np.full_like(ratios, SERIES[0])
-    for coefficient in SERIES[1:]:
-        total *= ratios
-        total += coefficient
-    return total
 
 
 MEMBER = MemoryScheme(order=2, sample=0.5, lever=0.5, weights=weights)

@@ -14,13 +14,42 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sparse
 
-from fe_contact.assembly.forms import Array, Basis, Indices, Matrix, vector_dofs
+from fe_contact.assembly.forms import Array, Basis, Indices, Matrix, values, vector_dofs, volumes
 from fe_contact.assembly.interior import factorized
 from fe_contact.solids.base import AXIAL, RADIAL, PointAnswer, Response, State
-from fe_contact.solids.rolled import Rolled
 from lumped.materials.energies.base import bent
 
 NOISE = 1e-11  # rounding: of an entry of a stiffness of which all has been taken away
+
+
+@dataclass(frozen=True)
+class Rolled:
+    """A ring laid flat: where its points are, and how the slopes of what is known on the flat mesh turn with it.
+
+    From (x, z), x the arc on the circle of ``radius``, z = radius - distance from its middle, to the plane. The middle
+    is at (0, radius), the lowest point of the circle at the origin.
+    """
+
+    radius: float
+
+    def place(self, flat: Array) -> Array:
+        """Of points (2, ...)."""
+        angle, distance = flat[0] / self.radius, self.radius - flat[1]
+        return np.stack([distance * np.sin(angle), self.radius - distance * np.cos(angle)])
+
+    def place_on(self, arc: Array) -> Array:
+        """Of points of the circle itself."""
+        return self.place(np.stack([arc, np.zeros_like(arc)]))
+
+    def stretch(self, flat: Array) -> Array:
+        """Length along the circle over that on the mesh, (...)."""
+        return np.asarray(1.0 - flat[1] / self.radius)
+
+    def slopes(self, gradient: Array, flat: Array) -> Array:
+        """In the plane, (2, ..., n), of n functions' slopes on the mesh at points (2, ...)."""
+        angle, along = (flat[0] / self.radius)[..., None], gradient[0] / self.stretch(flat)[..., None]
+        sine, cosine = np.sin(angle), np.cos(angle)
+        return np.stack([cosine * along - sine * gradient[1], sine * along + cosine * gradient[1]])
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,11 +69,9 @@ class Bulk:
     def of(cls, basis: Basis, plane: bool, elements: Indices, rolled: Rolled | None = None) -> Bulk:
         """Some elements of a scalar basis, axisymmetric or, of both halves, in plane strain, maybe ``rolled`` flat."""
         flat = np.asarray(basis.global_coordinates())
-        radius = flat[0]
         gradient = np.stack([np.asarray(shape[0].grad) for shape in basis.basis], axis=-1)
-        value = np.stack([np.broadcast_to(np.asarray(shape[0]), radius.shape) for shape in basis.basis], axis=-1)
-        hoop = np.zeros_like(value) if plane else value / radius[:, :, None]
-        weight = np.asarray(basis.dx) * (2.0 if plane else 2.0 * np.pi * radius)
+        value, weight = values(basis, flat[0].shape), volumes(basis, plane)
+        hoop = np.zeros_like(value) if plane else value / flat[0][:, :, None]
         if rolled is not None:
             gradient, weight = rolled.slopes(gradient, flat), weight * rolled.stretch(flat)
         slopes = np.concatenate([gradient, hoop[None]])[:, elements]

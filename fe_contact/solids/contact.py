@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fe_contact.assembly.forms import Array, Indices, vector_dofs
-from fe_contact.assembly.surface import FACET_POINTS, Surface, lagrange
+from fe_contact.assembly.surface import FACET_POINTS, Surface
 from lumped.shapes import Shape
 
 Points = npt.NDArray[np.bool_]  # which of them, (facets, points)
@@ -96,9 +96,7 @@ class OnTop:
 
     def overlap(self, place: Array, displacement: Array, depth: float) -> Overlap:
         """See :class:`Obstacle`."""
-        normal = np.zeros_like(place)
-        normal[1] = 1.0
-        return Overlap(depth + place[1] + displacement[1], normal, np.zeros((2, *place.shape)))
+        return _straight(depth + place[1] + displacement[1])
 
     def along(self, place: Array) -> Array:
         """From the ring's top, left or right."""
@@ -119,13 +117,17 @@ class OnUndeformed:
     def overlap(self, place: Array, displacement: Array, depth: float) -> Overlap:
         """See :class:`Obstacle`."""
         rise = self.profile.height(self.unit * np.abs(place[0])) / self.unit
-        normal = np.zeros_like(place)
-        normal[1] = 1.0
-        return Overlap(depth + place[1] - rise + displacement[1], normal, np.zeros((2, 2, *rise.shape)))
+        return _straight(depth + place[1] - rise + displacement[1])
 
     def along(self, place: Array) -> Array:
         """From the axis."""
         return np.asarray(place[0])
+
+
+def _straight(depth: Array) -> Overlap:
+    """With a striker whose surface counts as flat where it is met."""
+    none = np.zeros_like(depth)
+    return Overlap(depth, np.stack([none, np.ones_like(depth)]), np.zeros((2, 2, *depth.shape)))
 
 
 def flat_places(coordinate: Array) -> Array:
@@ -150,14 +152,11 @@ class Skin:
     @classmethod
     def of(cls, surface: Surface, order: int, size: int, placed: Callable[[Array], Array] = flat_places) -> Skin:
         """Of a boundary of elements of an ``order``; ``placed``: where points of its coordinates are, (2, ...)."""
-        corners = surface.corners(order)
-        count = corners.size - 1
-        gauss, weight = np.polynomial.legendre.leggauss(order + FACET_POINTS)
-        nodes = order * np.arange(count)[:, None] + np.arange(order + 1)
-        share = 0.5 * (gauss + 1.0)
-        coordinate = corners[:-1, None] + np.diff(corners)[:, None] * share
-        weights = 0.5 * np.diff(corners)[:, None] * weight * surface.measure(coordinate)
-        return cls(placed(coordinate), weights, lagrange(share, order), vector_dofs(surface.dofs[nodes].T), size)
+        each = order + FACET_POINTS
+        coordinate, weights, trace = surface.quadrature(order)
+        nodes = order * np.arange(coordinate.size // each)[:, None] + np.arange(order + 1)
+        places, dofs = placed(coordinate.reshape(-1, each)), vector_dofs(surface.dofs[nodes].T)
+        return cls(places, weights.reshape(-1, each), trace[:each, : order + 1], dofs, size)
 
     @cached_property
     def products(self) -> Array:

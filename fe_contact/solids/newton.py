@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fe_contact.assembly.forms import Array, Matrix
+from fe_contact.assembly.forms import Array
 from fe_contact.assembly.interior import elimination_order, factorized
 from fe_contact.solids.base import State, elliptic
 from fe_contact.solids.bulk import CoredBody, Loaded, Pattern
@@ -82,16 +82,11 @@ class Balance:
     touch: Touch
 
     @cached_property
-    def strain_energy(self) -> float:
-        """Of core and rest, J."""
+    def energy(self) -> float:
+        """Of core and rest, and of the penalty, J."""
         body = self.encounter.body
         rim = self.displacement[body.rim]
-        return self.loaded.energy + float(rim @ (0.5 * body.rest @ rim + body.pull))
-
-    @property
-    def energy(self) -> float:
-        """With the penalty's."""
-        return self.strain_energy + self.touch.energy
+        return self.loaded.energy + float(rim @ (0.5 * body.rest @ rim + body.pull)) + self.touch.energy
 
     @property
     def force(self) -> float:
@@ -106,17 +101,6 @@ class Balance:
         forces[body.rim] += body.rest @ self.displacement[body.rim] + body.pull
         return forces[body.free]
 
-    def tangent(
-        self, convex: bool, unstrained: bool = False, pulls: Array | None = None, meets: Points | None = None
-    ) -> Matrix:
-        """Sparse (free, free); ``convex``: without what the striker's bend takes; ``unstrained``: of a body at rest;
-        ``pulls`` (2, elements, points) in place of the body's own; ``meets``: points that count as touching too.
-        """
-        loaded = self._at_rest if unstrained else self.loaded if pulls is None else self.loaded.under(pulls)
-        touch = self.touch if meets is None else replace(self.touch, touching=self.touch.touching | meets)
-        blocks = [loaded.matrices(), touch.matrices(convex), self.encounter.body.rest[None]]
-        return self.encounter.pattern.matrix(blocks)
-
     def factors(
         self,
         convex: bool = False,
@@ -124,9 +108,17 @@ class Balance:
         pulls: Array | None = None,
         meets: Points | None = None,
     ) -> Callable[[Array], Array]:
-        """Back-substitution for that. Raises EquilibriumLost where a point is to touch a striker that ends before."""
+        """Back-substitution (free,) for the tangent. Raises EquilibriumLost where a point is to touch a striker that
+        ends before.
+
+        ``convex``: without what the striker's bend takes; ``unstrained``: of a body at rest; ``pulls`` (2, elements,
+        points) in place of the body's own; ``meets``: points that count as touching too.
+        """
         with np.errstate(invalid="ignore"):
-            tangent = self.tangent(convex, unstrained, pulls, meets)
+            loaded = self._at_rest if unstrained else self.loaded if pulls is None else self.loaded.under(pulls)
+            touch = self.touch if meets is None else replace(self.touch, touching=self.touch.touching | meets)
+            blocks = [loaded.matrices(), touch.matrices(convex), self.encounter.body.rest[None]]
+            tangent = self.encounter.pattern.matrix(blocks)
         if not np.isfinite(tangent.data).all():
             raise EquilibriumLost(f"the contact is as wide as the striker at depth {self.depth:.3g}")
         return factorized(tangent, ordered=True)

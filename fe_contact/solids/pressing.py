@@ -20,16 +20,14 @@ from fe_contact.bodies.pressing import PressedDepths, half_width
 from fe_contact.errors import ContactTooWide
 from fe_contact.progress import Counted, uncounted
 from fe_contact.settings import Numerics
-from fe_contact.solids.base import State
-from fe_contact.solids.block import press as pressed_alike
-from fe_contact.solids.bulk import Bulk, CoredBody
+from fe_contact.solids.base import State, elliptic
+from fe_contact.solids.bulk import Bulk, CoredBody, Rolled
 from fe_contact.solids.contact import Obstacle, OnDeformed, OnRound, OnTop, Points, Skin, flat_places
 from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.newton import Balance, BeyondRange, Encounter, Equilibrium, EquilibriumLost, balanced
-from fe_contact.solids.rolled import Rolled
 from fe_contact.targets.base import TARGETS
 from lumped.errors import BadInput, Fault
-from lumped.materials.energies.base import energy_of
+from lumped.materials.energies.base import Strained, energy_of, strained
 from lumped.scene.geometry import Geometry, finite_faults
 from lumped.scene.indenter import Indenter
 from lumped.scene.tables import Model
@@ -43,6 +41,8 @@ RAMP = (0.02, 0.2, 1.0)  # shares of the penalty with which a body is pressed fo
 FARTHEST = 2.0  # a depth over the one before it, beyond which another is put between, or under a tip another mesh
 LEAST_BEGUN = 0.05  # of a depth, that a body has to be pressed by from rest at once
 WIDENING = 0.5  # power of the depth that a contact is wide by, under a sphere
+ITERATIONS = 40  # work: of Newton's method for the stretch across a block
+ROUNDING = 1e-13  # of that stretch
 NEAREST = 0.02  # apart in ln depth, a way is not made in halves any more
 
 
@@ -172,7 +172,7 @@ def press(
     Raises NotReached.
     """
     if isinstance(indenter.shape, Block) and indenter.shape.uniform:
-        return pressed_alike(indenter, indenter.shape, depth)
+        return _alike(indenter, indenter.shape, depth)
     found, again, widening = dict[int, Reached](), dict[int, Reached](), _widening(depth, radii)
     for together in _together(indenter.profile, depth):
         solid, reached = Solid.of(indenter, radii[together], numerics), None
@@ -185,6 +185,41 @@ def press(
                 again[i] = solid.pressed(_pressed_by(softer.penalty / numerics.penalty * stiffness, reached))
     told = _told(solid, found)
     return told if softer is None else replace(told, softer=_told(solid, again))
+
+
+def _alike(indenter: Indenter, block: Block, depth: Array) -> PressedDepths:
+    """Every depth, m, on a ``block`` strained alike everywhere: what one point answers is what the block answers,
+    whatever the mesh. Raises EquilibriumLost.
+    """
+    along, material = 1.0 - depth / block.thickness, indenter.material
+    across = np.ones_like(along)
+    answer = _answered(indenter, along, across)
+    for _ in range(ITERATIONS if block.sides == "free" else 0):
+        change = -answer.stress[0] / (answer.tangent[0, 0] + answer.tangent[0, 4])
+        across = across + np.maximum(change, 0.5 * (np.min(along) - 1.0))
+        answer = _answered(indenter, along, across)
+        if np.abs(change).max() < ROUNDING:
+            break
+    else:
+        if block.sides == "free":
+            raise EquilibriumLost(f"a block pressed by {depth.max():.3g} m has no stress across it that is zero")
+    bearing = [elliptic(answer.tangent[..., i]) for i in range(depth.size)]
+    if not all(bearing):
+        raise BeyondRange(float(depth[np.logical_not(bearing)].min()))
+    force = -block.area * answer.stress[3] / block.modulus(material).relaxed
+    if not np.all(force > 0.0):
+        raise EquilibriumLost(f"a block pressed by {depth.max():.3g} m does not press back")
+    work = {"degrees_of_freedom": 1, "contact_problems": depth.size, "iterations": ITERATIONS}
+    return PressedDepths(force, block.fixed_radius * across, work, np.inf, True)
+
+
+def _answered(indenter: Indenter, along: Array, across: Array) -> Strained:
+    """Of points stretched so, each (n,)."""
+    material, none = indenter.material, np.zeros_like(along)
+    shear = material.shear.relaxed
+    lame = 2.0 * shear * material.nu / (1.0 - 2.0 * material.nu)
+    gradient = np.stack([across - 1.0, none, none, along - 1.0, across - 1.0])
+    return strained(energy_of(material.hyperelastic), gradient, shear, lame)
 
 
 def _together(profile: Shape, depth: Array) -> list[list[int]]:

@@ -75,15 +75,9 @@ class BulkSurface(ByModes, Deformable):
         return BulkBody(self.modes, self.moduli, scheme, scale)
 
 
-def relaxing(
-    body: Recipe[ElasticBody], moduli: Moduli, numerics: Numerics, length: float | None = None, rim: float | None = None
-) -> BulkSurface:
-    """A meshed body of a material with these moduli, in an impact with these settings; see :class:`BulkSurface`."""
-    return _surface(body, moduli, Pace.of(numerics), length, rim)
-
-
 @cached
-def _surface(
-    body: Recipe[ElasticBody], moduli: Moduli, pace: Pace, length: float | None, rim: float | None
+def relaxing(
+    body: Recipe[ElasticBody], moduli: Moduli, pace: Pace, length: float | None = None, rim: float | None = None
 ) -> BulkSurface:
+    """A meshed body of a material with these moduli, in an impact of this pace; see :class:`BulkSurface`."""
     return BulkSurface(modes(body, *pace.ratios(moduli)), moduli, length=length, rim=rim)

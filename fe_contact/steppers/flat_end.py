@@ -15,7 +15,7 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import SurfaceOperator
-from fe_contact.bodies.memory import SurfaceMemory, step_law
+from fe_contact.bodies.memory import SurfaceMemory
 from fe_contact.bodies.pressing import Still
 from fe_contact.contact.problem import ContactSolution
 from fe_contact.errors import ContactLost
@@ -80,12 +80,12 @@ class FlatStepper(OfSurface):
 
     def __init__(self, strike: Strike, stiffness: float, radius: float, numerics: Numerics) -> None:
         self.strike, self.stiffness, self.radius, self.numerics = strike, stiffness, radius, numerics
-        self.scheme = SCHEMES.get(numerics.scheme)
-        self.first_force = stiffness * (strike.relaxation.viscosity * strike.velocity + self._held(self.touch().memory))
+        self.relaxation, self.scheme = strike.relaxation, SCHEMES.get(numerics.scheme)
+        self.first_force = stiffness * (self.relaxation.viscosity * strike.velocity + self._held(self.touch().memory))
 
     def at_rest(self) -> SurfaceMemory:
         """Of depth and force, at the one place."""
-        return SurfaceMemory.at_rest(np.ones(1), self.strike.relaxation, fields=2)
+        return SurfaceMemory.at_rest(np.ones(1), self.relaxation, fields=2)
 
     def standing(self) -> int:
         """The one place there is."""
@@ -100,8 +100,7 @@ class FlatStepper(OfSurface):
 
         Raises ContactLost where the body would have to pull.
         """
-        strike = self.strike
-        law = step_law(strike.relaxation, self.scheme, length)
+        strike, law = self.strike, self.law(length)
         carried = state.memory.carried(law)
         inertia = Inertia.of(strike, self.scheme, state, length)
         yielding = 1.0 + self.stiffness * law.now * inertia.lever / strike.mass
@@ -120,7 +119,7 @@ class FlatStepper(OfSurface):
 
     def _held(self, memory: SurfaceMemory) -> float:
         """What the springs press with, Pa m, which a dashpot alone holds back until touch."""
-        relaxation, strain = self.strike.relaxation, memory.strain[0, 0]
+        relaxation, strain = self.relaxation, memory.strain[0, 0]
         return float(relaxation.equilibrium * strain + np.array(relaxation.moduli) @ memory.branches[:, 0, 0])
 
     def between(self, before: State, step: Step) -> float:

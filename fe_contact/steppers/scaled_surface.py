@@ -34,7 +34,7 @@ from fe_contact.assembly.cache import Recipe, cached_surface
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import ElasticBody, SurfaceOperator, operator_of
 from fe_contact.assembly.surface import monomials
-from fe_contact.bodies.memory import StepLaw, SurfaceBody, SurfaceMemory, area_weights, graded, interpolate, step_law
+from fe_contact.bodies.memory import StepLaw, SurfaceBody, SurfaceMemory, area_weights, graded, interpolate
 from fe_contact.bodies.pressing import BEYOND, EDGE_WINDOW, RESCALINGS
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactProblem, ContactSolution, PressedSurface, Touching, count, moved
@@ -87,7 +87,7 @@ class Stepper(OfSurface):
         expected: Sequence[float] | Array = (),
     ) -> None:
         self.strike, self.surface, self.numerics = strike, surface, numerics
-        self.scheme = SCHEMES.get(numerics.scheme)
+        self.relaxation, self.scheme = strike.relaxation, SCHEMES.get(numerics.scheme)
         self.enforcement = ENFORCEMENTS.get(numerics.enforcement)
         points = max(MEMORY_POINTS, POINTS_A_STEP * numerics.steps)
         if isinstance(strike.memory, SurfaceMemory):  # of a contact before, in other steps perhaps
@@ -100,7 +100,7 @@ class Stepper(OfSurface):
 
     def at_rest(self) -> SurfaceMemory:
         """Of the displacement and of the pressure, at the memory's radii."""
-        return SurfaceMemory.at_rest(self.areas, self.strike.relaxation, fields=2)
+        return SurfaceMemory.at_rest(self.areas, self.relaxation, fields=2)
 
     def standing(self) -> int:
         """The axis."""
@@ -115,7 +115,7 @@ class Stepper(OfSurface):
 
         Raises ContactLost, ContactNotSettled or MemoryTooSmall.
         """
-        law = step_law(self.strike.relaxation, self.scheme, length)
+        law = self.law(length)
         inertia = Inertia.of(self.strike, self.scheme, state, length)
         carried = state.memory.carried(law)
         scale, edge, solution, work = self._settle(inertia, steps, law, carried[0])
@@ -153,7 +153,7 @@ class Stepper(OfSurface):
                 raise MemoryTooSmall(radii[-1])
             height = np.minimum(self.strike.height(radii), BEYOND * radii[-1])  # a profile may end
             overlap = law.now * (free_depth - height) + interpolate(carried, limit, radii)
-            problem = self.surface.problem(overlap, self.numerics.penalty, law.now * give * scale)
+            problem = ContactProblem(self.surface.pressed, overlap, self.numerics.penalty, law.now * give * scale)
             solution = self.enforcement.enforce(problem, *guesses)
             iterations += solution.iterations
             if not solution.converged:
@@ -249,17 +249,6 @@ class ScaledSurface(Deformable):
         """Where the mesh follows the contact, what the snapshot says: it has no roughness to be freed of."""
         return (snapshot.radii, snapshot.pressure) if self.follows_contact else super().felt(snapshot)
 
-    def problem(self, overlap: Array, penalty: float, yielding: float | Array) -> ContactProblem:
-        """Contact problem on the unit mesh.
-
-        Parameters
-        ----------
-        overlap : (q,) free overlap times modulus at the quadrature points.
-        penalty : dimensionless penalty stiffness, in units of modulus over contact radius.
-        yielding : striker's displacement times modulus per unit-mesh force; 0 holds it fixed, (q,) counts by place.
-        """
-        return ContactProblem(self.pressed, overlap, penalty, yielding)
-
     def response(self, pressure: Array) -> Array:
         """Displacement times modulus of all surface nodes, (n_s,), under a unit-mesh pressure (q,)."""
         operator = self.operator
@@ -327,7 +316,7 @@ def _pressures(operator: SurfaceOperator, stresses: Array) -> Array:
 
 def _stresses(stepper: Stepper, steps: Sequence[Step], places: Array) -> Array:
     """w at places (m, s), m, one column a step; Pa m."""
-    times = np.array(stepper.strike.relaxation.times)
+    times = np.array(stepper.relaxation.times)
     missed = np.zeros((len(times), len(stepper.radii)))
     found = np.empty_like(places)
     before, edge = stepper.touch(), 0.0
@@ -343,12 +332,12 @@ def _stresses(stepper: Stepper, steps: Sequence[Step], places: Array) -> Array:
 
 def _stress(stepper: Stepper, before: State, step: Step, missed: Array, places: Array) -> Array:
     """w at places (m,), m, when the contact radius was that of a step; ``missed`` (k, r) goes to the branches."""
-    relaxation, after = stepper.strike.relaxation, step.state
+    relaxation, after = stepper.relaxation, step.state
     share = (step.radius_time - before.time) / step.length
     depth = before.depth + share * (after.depth - before.depth)
     velocity = before.velocity + share * (after.velocity - before.velocity)
     strain = before.memory.strain + share * (after.memory.strain - before.memory.strain)
-    law = step_law(relaxation, stepper.scheme, share * step.length)
+    law = stepper.law(share * step.length)
     branches = before.memory.advanced(law, strain).branches[:, 0] + missed
     now = relaxation.equilibrium * (depth - stepper.strike.height(places)) + relaxation.viscosity * velocity
     return np.asarray(now + interpolate(np.asarray(relaxation.moduli) @ branches, stepper.radii[-1], places))
@@ -359,7 +348,7 @@ def _missed(stepper: Stepper, before: State, step: Step, edge: float) -> Array:
 
     Of a detour from the straight line, dz/dt = du/dt - z/tau leaves -1/tau times its faded integral.
     """
-    after, ratios = step.state, step.length / np.array(stepper.strike.relaxation.times)
+    after, ratios = step.state, step.length / np.array(stepper.relaxation.times)
     beside = slice(int(stepper.radii.searchsorted(edge, "right")), None)
     radii = stepper.radii[beside]
     height = np.minimum(stepper.heights[beside], BEYOND * stepper.radii[-1])  # a profile may end

@@ -15,19 +15,20 @@ from typing import Any
 import numpy as np
 from scipy.linalg import block_diag
 
-from fe_contact.assembly.cache import Recipe
+from fe_contact.assembly.cache import Recipe, cached_surface
 from fe_contact.assembly.forms import Array
-from fe_contact.assembly.operators import ElasticBody, SurfaceOperator
+from fe_contact.assembly.operators import ElasticBody, SurfaceOperator, operator_of
 from fe_contact.bodies.bulk_memory import BulkBody, Moduli
 from fe_contact.bodies.memory import SurfaceBody
 from fe_contact.bodies.modes import ByModes, Condensed, Modes, modes
-from fe_contact.bodies.offer import Half, Offer, Recalled
+from fe_contact.bodies.offer import Half, Offer
 from fe_contact.contact.problem import PressedSurface
 from fe_contact.schemes.base import MemoryScheme
 from fe_contact.steppers.bulk_surface import Pace
 from fe_contact.steppers.steps import Snapshot
 from fe_contact.steppers.struck import Deformable
-from lumped.materials import Relaxation
+from lumped.materials import Material, Relaxation
+from lumped.shapes import Shape
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,12 +74,6 @@ class BulkSide(ByModes, BodySide):
     modes: Modes = field(kw_only=True)
     moduli: Moduli = field(kw_only=True)
 
-    @classmethod
-    def of(cls, body: Recipe[ElasticBody], moduli: Moduli, pace: Pace, relaxation: Relaxation) -> BulkSide:
-        """A meshed body in an impact of this pace, under a pressure at its own points."""
-        found = modes(body, *pace.ratios(moduli))
-        return cls(found.operator, relaxation, found.operator.trace, modes=found, moduli=moduli)
-
     @property
     def steady(self) -> bool:
         """No: its Poisson's ratio relaxes."""
@@ -91,6 +86,20 @@ class BulkSide(ByModes, BodySide):
     @cached_property
     def _stiffer(self) -> Modes:
         return self.modes.stiffer(self.share)
+
+
+def side_of(body: Recipe[ElasticBody], material: Material, shape: Shape, pace: Pace | None) -> BodySide:
+    """A meshed body under a pressure at its own points; ``pace`` of an impact in which it may relax by its bulk."""
+    relaxation = shape.modulus(material).scaled(shape.total)
+    if pace is not None and material.constant == "bulk" and not material.young.is_elastic:
+        moduli = Moduli.of(material, shape.total)
+        found = modes(body, *pace.ratios(moduli))
+        return BulkSide(found.operator, relaxation, found.operator.trace, modes=found, moduli=moduli)
+    operator = _operator(body, material.nu)
+    return BodySide(operator, relaxation, operator.trace)
+
+
+_operator = cached_surface(operator_of)
 
 
 def stacked(operator: SurfaceOperator, sides: tuple[BodySide, ...], weights: tuple[float, ...]) -> PressedSurface:
@@ -217,17 +226,13 @@ class StackedBody:
         """Elastic energy in all springs, J."""
         return sum(half.stored(own) for half, own in zip(self.halves, memory, strict=True))
 
-    def dissipated(self, before: Memory, after: Memory, length: float) -> float:
-        """Heat of a step, J."""
+    def spent(self, before: Memory, after: Memory, length: float) -> tuple[float, float]:
+        """Heat of a step, J, and of the work in it what the scheme leaves unaccounted for, J."""
         steps = zip(self.halves, before, after, strict=True)
-        return sum(half.dissipated(first, then, length) for half, first, then in steps)
+        heats, losses = zip(*(half.spent(first, then, length) for half, first, then in steps), strict=True)
+        return sum(heats), sum(losses)
 
-    def lost(self, before: Memory, after: Memory, length: float) -> float:
-        """Of the work in a step, what the scheme leaves unaccounted for, J."""
-        steps = zip(self.halves, before, after, strict=True)
-        return sum(half.lost(first, then, length) for half, first, then in steps)
-
-    def _pressed(self, found: Sequence[Recalled], now: float) -> PressedSurface:
+    def _pressed(self, found: Sequence[Offer], now: float) -> PressedSurface:
         """All sides, each with its modulus over the common one; a steady body alone is the same in every step."""
         steady = all(side.steady for side in self.sides)
         if steady and len(self.sides) == 1:

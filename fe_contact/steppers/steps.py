@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import NamedTuple, Protocol
 
 from fe_contact.assembly.forms import Array
-from fe_contact.bodies.memory import SurfaceMemory
+from fe_contact.bodies.memory import OneNetwork, SurfaceMemory
 from fe_contact.bodies.offer import Memory
 from fe_contact.contact.problem import ContactSolution
 from fe_contact.schemes.base import MemoryScheme
@@ -189,21 +189,17 @@ class Stepping(Protocol):
     def stored(self, memory: Memory) -> float:
         """Elastic energy, J."""
 
-    def dissipated(self, before: Memory, after: Memory, length: float) -> float:
-        """Heat of a step of a length, s; J."""
-
-    def lost(self, before: Memory, after: Memory, length: float) -> float:
-        """Of the work on the body in a step of a length, s, what a scheme leaves unaccounted for, J."""
+    def spent(self, before: Memory, after: Memory, length: float) -> tuple[float, float]:
+        """Heat of a step of a length, s; of the work on the body in it what a scheme leaves unaccounted for; J."""
 
     def between(self, before: State, step: Step) -> float:
         """Work of the striker in a step that does not reach the body, J: across a gap that opens or closes."""
 
 
-class OfSurface:
+class OfSurface(OneNetwork):
     """What, of the contract of :class:`Stepping`, all do on a body whose memory is that of its surface alone."""
 
     strike: Strike
-    scheme: MemoryScheme
 
     def at_rest(self) -> SurfaceMemory:
         """The memory of a body that nothing has touched yet."""
@@ -217,18 +213,6 @@ class OfSurface:
     def remembered(self, memory: SurfaceMemory) -> SurfaceMemory:
         """All that is remembered."""
         return memory
-
-    def stored(self, memory: SurfaceMemory) -> float:
-        """Elastic energy, J."""
-        return memory.stored(self.strike.relaxation)
-
-    def dissipated(self, before: SurfaceMemory, after: SurfaceMemory, length: float) -> float:
-        """Heat of a step of a length, s; J."""
-        return before.dissipated(after, self.strike.relaxation, length)
-
-    def lost(self, before: SurfaceMemory, after: SurfaceMemory, length: float) -> float:
-        """Of the work in a step of a length, s, what the scheme leaves unaccounted for, J."""
-        return before.lost(after, self.strike.relaxation, self.scheme, length)
 
 
 def radius_time(scheme: MemoryScheme, velocity: float, time: float, length: float) -> float:

@@ -230,13 +230,9 @@ class FixedStepper:
         """Elastic energy, J."""
         return self.body.stored(memory.body)
 
-    def dissipated(self, before: Memory, after: Memory, length: float) -> float:
-        """Heat of a step of a length, s; J."""
-        return self.body.dissipated(before.body, after.body, length)
-
-    def lost(self, before: Memory, after: Memory, length: float) -> float:
-        """Of the work in a step of a length, s, what the scheme leaves unaccounted for, J."""
-        return self.body.lost(before.body, after.body, length)
+    def spent(self, before: Memory, after: Memory, length: float) -> tuple[float, float]:
+        """Heat of a step of a length, s; of the work in it what the scheme leaves unaccounted for; J."""
+        return self.body.spent(before.body, after.body, length)
 
     def between(self, before: State, step: Step) -> float:
         """Work of the striker in a step that does not reach the body, J: of the penalty, and at a gap that opens."""

@@ -3,35 +3,31 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
 import meshes
-from fe_contact.assembly.cache import Recipe, cached, cached_surface
-from fe_contact.assembly.forms import Array, Basis
+from fe_contact.assembly.cache import Recipe, cached
+from fe_contact.assembly.forms import Array, Basis, volumes
 from fe_contact.assembly.interior import Floating
-from fe_contact.assembly.operators import ElasticBody, axisymmetric, basis_on, made, operator_of, plane
+from fe_contact.assembly.operators import ElasticBody, basis_on, made
 from fe_contact.assembly.surface import crown, trace_between
-from fe_contact.bodies.bulk_memory import Moduli
 from fe_contact.bodies.pressing import (
     LINE_REFINEMENT,
-    MARGIN,
     SPHERE_REFINEMENT,
     STRUCK_REFINEMENT,
     BodyStill,
     Still,
     Zone,
-    smallest_struck,
+    struck_ends,
 )
 from fe_contact.settings import Numerics
 from fe_contact.steppers.bulk_surface import Pace
-from fe_contact.steppers.stacked import BodySide, BulkSide, Stacked, stacked
+from fe_contact.steppers.stacked import Stacked, side_of, stacked
 from lumped.materials import Material
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
-from lumped.shapes import Shape
 from lumped.targets._round import RoundTarget
 
 SPARE = 1.05  # the larger body's fine mesh over what the contact may reach on the smaller
@@ -71,19 +67,13 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
 def struck(geometry: Geometry, numerics: Numerics) -> Stacked:
     """Both bodies in an impact whose contact grows from nothing to the radius that the settings expect."""
     elements = STRUCK_REFINEMENT * numerics.elements_per_contact
-    return _together(geometry, _ends(geometry, numerics), elements, numerics.order)
+    return _together(geometry, struck_ends(geometry.shape, numerics), elements, numerics.order)
 
 
 def relaxing(geometry: Geometry, numerics: Numerics) -> Stacked:
     """The same where at least one is of constant bulk modulus and relaxes."""
     elements = STRUCK_REFINEMENT * numerics.elements_per_contact
-    return _together(geometry, _ends(geometry, numerics), elements, numerics.order, Pace.of(numerics))
-
-
-def _ends(geometry: Geometry, numerics: Numerics) -> tuple[float, float]:
-    """Radii between which the contacts of an impact end, m."""
-    largest = numerics.contact_radius / MARGIN
-    return smallest_struck(geometry.shape) * largest, largest
+    return _together(geometry, struck_ends(geometry.shape, numerics), elements, numerics.order, Pace.of(numerics))
 
 
 @cached
@@ -97,25 +87,17 @@ def _together(
     radii = np.array(ends)
     first, *others = _bodies(geometry)
     shape = geometry.shape
-    own = _side(first, first.meshed(Zone.round(radii, first.radius), elements, order, shape.plane), shape, pace)
+    finest = first.meshed(Zone.round(radii, first.radius), elements, order, shape.plane)
+    own = side_of(finest, first.material, shape, pace)
     sides = [own]
     for other in others:
         larger = other.meshed(Zone.round(SPARE * radii, other.radius), elements, order, shape.plane)
         ratio, power = first.radius / other.radius, 2 - own.operator.dimension
-        side = _side(other, larger, shape, pace)
+        side = side_of(larger, other.material, shape, pace)
         points = np.arcsin(np.minimum(ratio * np.sin(own.operator.points), 1.0))
         trace = trace_between(side.operator.corners, points, side.operator.order)
         sides.append(replace(side, trace=trace, share=ratio**power))
     return Stacked(own.operator, tuple(sides), first.radius)
-
-
-def _side(body: _Body, meshed: Recipe[ElasticBody], shape: Shape, pace: Pace | None) -> BodySide:
-    """One of the bodies under a pressure at its own points."""
-    material, relaxation = body.material, shape.modulus(body.material).scaled(shape.total)
-    if pace is not None and material.constant == "bulk" and not material.young.is_elastic:
-        return BulkSide.of(meshed, Moduli.of(material, shape.total), pace, relaxation)
-    operator = _operator(meshed, material.nu)
-    return BodySide(operator, relaxation, operator.trace)
 
 
 def _bodies(geometry: Geometry) -> list[_Body]:
@@ -128,22 +110,14 @@ def _bodies(geometry: Geometry) -> list[_Body]:
     return sorted(bodies, key=lambda body: body.radius)
 
 
-_operator = cached_surface(operator_of)
-
-
 @cached
 def _meshed(elements: float, order: int, smallest: float, contact: float, support: bool, in_plane: bool) -> ElasticBody:
     """Of unit radius, points and ``contact`` in rad from the pole; ``support``: whether it is held."""
     mesh = made(meshes.cylinder if in_plane else meshes.sphere, elements, smallest, contact, order, support)
     basis = basis_on(mesh, order)
-    around = 1.0 if in_plane else 2.0 * np.pi * np.asarray(basis.global_coordinates())[0]
-    return ElasticBody(
-        basis,
-        partial(plane if in_plane else axisymmetric, basis),
-        _fixed(basis, support),
-        crown(basis, contact, None if in_plane else 0.0),
-        None if support else Floating.of(basis, around * np.asarray(basis.dx)),
-    )
+    floating = None if support else Floating.of(basis, volumes(basis, in_plane))
+    surface = crown(basis, contact, None if in_plane else 0.0)
+    return ElasticBody.alone(basis, _fixed(basis, support), surface, in_plane, floating)
 
 
 def _fixed(basis: Basis, support: bool) -> npt.NDArray[np.int64]:

@@ -54,7 +54,7 @@ class MeshedTarget:
 
         def relaxing(geometry: Geometry, numerics: Numerics) -> Deformable:
             moduli = Moduli.of(geometry.material, geometry.shape.total)
-            return bulk_surface.relaxing(meshed(geometry, numerics), moduli, numerics)
+            return bulk_surface.relaxing(meshed(geometry, numerics), moduli, bulk_surface.Pace.of(numerics))
 
         def whole(geometry: Geometry, numerics: Numerics) -> WholeBody:
             return meshed(geometry, numerics).follow().condensed(geometry.material.nu)

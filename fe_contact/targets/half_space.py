@@ -24,11 +24,11 @@ from fe_contact.assembly.operators import (
     basis_on,
     condensed,
     made,
-    surface_operator,
     system_matrix,
 )
 from fe_contact.assembly.surface import flat, lagrange
 from fe_contact.bodies.pressing import (
+    FINITE_MARGIN,
     FINITE_REFINEMENT,
     LINE_REFINEMENT,
     REFINEMENT,
@@ -88,7 +88,10 @@ def _operator(poisson: float, elements: float, order: int, far_radius: float) ->
 
 
 def _whole(poisson: float, elements: float, order: int, far_radius: float) -> WholeBody:
-    return surface_operator(made(meshes.half_space, elements, far_radius), order, poisson)
+    """Condensed for contact radius one. Raises BodyTooFine for more unknowns than is bearable."""
+    basis = basis_on(made(meshes.half_space, elements, far_radius), order)
+    fixed = 2 * basis.get_dofs("axis").flatten()
+    return condensed(basis, system_matrix(basis, poisson), fixed, poisson, flat(basis))
 
 
 def under_rim(indenter: Indenter, radius: float, numerics: Numerics) -> Still:
@@ -161,7 +164,7 @@ def _upwards(basis: Basis, depth: float) -> Matrix:
 
 def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:
     """The half-space for large strains, on one mesh for all contacts; ``radii`` expected of them, m."""
-    zone = Zone.finite(radii)
+    zone = Zone.of(radii, FINITE_MARGIN)
     elements = FINITE_REFINEMENT * numerics.elements_per_contact
     body = _solid(elements, zone.smallest, numerics.far_radius, numerics.order)
     return SolidMesh(body, zone.reference)

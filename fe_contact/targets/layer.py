@@ -14,10 +14,11 @@ import scipy.sparse as sparse
 import meshes
 from fe_contact.assembly.cache import Recipe, cached
 from fe_contact.assembly.far_field import on_boundary
-from fe_contact.assembly.forms import Array, Basis, Matrix, elastic, plane_stiffness, stiffness
+from fe_contact.assembly.forms import Array, Basis, Matrix, elastic, stiffness
 from fe_contact.assembly.operators import ElasticBody, SolidMesh, basis_on, boundary, made
 from fe_contact.assembly.surface import flat
 from fe_contact.bodies.pressing import (
+    FINITE_MARGIN,
     FINITE_REFINEMENT,
     LINE_REFINEMENT,
     REFINEMENT,
@@ -54,7 +55,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
 
 def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:
     """The layer for large strains; ``radii``, m: those of the contacts expected."""
-    zone = Zone.finite(radii)
+    zone = Zone.of(radii, FINITE_MARGIN)
     _, body = _meshed(indenter.geometry, zone.reference, zone.smallest, FINITE_REFINEMENT, numerics)
     return SolidMesh(body.follow(), zone.reference)
 
@@ -108,10 +109,8 @@ def matrix(basis: Basis, plane: bool, bulk: float, shear: float) -> Matrix:
 
     A bonded one is held there, or has died away.
     """
-    law = elastic(bulk, shear)
-    if plane:
-        return plane_stiffness(basis, law)
-    return stiffness(basis, law) + robin(boundary(basis, ("side",)), shear)
+    own = stiffness(basis, elastic(bulk, shear), plane)
+    return own if plane else own + robin(boundary(basis, ("side",)), shear)
 
 
 def robin(facets: Basis, shear: float) -> sparse.coo_matrix:

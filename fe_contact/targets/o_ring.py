@@ -3,33 +3,29 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
 import meshes
 from fe_contact.assembly.cache import cached
 from fe_contact.assembly.forms import Array
-from fe_contact.assembly.operators import ElasticBody, SolidMesh, axisymmetric, basis_on, made, operator_of
+from fe_contact.assembly.operators import ElasticBody, SolidMesh, basis_on, made
 from fe_contact.assembly.surface import crown
-from fe_contact.bodies.bulk_memory import Moduli
 from fe_contact.bodies.pressing import (
     FINITE_REFINEMENT,
     LINE_REFINEMENT,
-    MARGIN,
     STRUCK_REFINEMENT,
     BodyStill,
     Still,
     Zone,
     held,
-    smallest_struck,
+    struck_ends,
 )
 from fe_contact.settings import Numerics
 from fe_contact.steppers.bulk_surface import Pace
 from fe_contact.steppers.scaled_surface import on_mesh
-from fe_contact.steppers.stacked import BodySide, BulkSide, Stacked
+from fe_contact.steppers.stacked import Stacked, side_of
 from fe_contact.targets.base import MeshedTarget
-from lumped.materials import Relaxation
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
 from lumped.targets import Target
@@ -54,21 +50,18 @@ def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:
 
 def struck(geometry: Geometry, numerics: Numerics) -> Stacked:
     """The O-ring in an impact; its other half moves alike, so that both together are half as stiff as one."""
-    target, sizes = _struck_sizes(geometry, numerics)
-    return _struck(geometry.material.nu, geometry.shape.modulus(geometry.material), target, sizes)
+    return _stacked(geometry, _struck_sizes(geometry, numerics))
 
 
 def relaxing(geometry: Geometry, numerics: Numerics) -> Stacked:
     """The same of constant bulk modulus."""
-    target, sizes = _struck_sizes(geometry, numerics)
-    relaxation, moduli = geometry.shape.modulus(geometry.material), Moduli.of(geometry.material, geometry.shape.total)
-    return _relaxing(relaxation, moduli, target, sizes, Pace.of(numerics))
+    return _stacked(geometry, _struck_sizes(geometry, numerics), Pace.of(numerics))
 
 
-def _struck_sizes(geometry: Geometry, numerics: Numerics) -> tuple[ORing, Sizes]:
+def _struck_sizes(geometry: Geometry, numerics: Numerics) -> Sizes:
     """For contacts that grow from nothing to the half-width that the settings expect."""
-    radii = numerics.contact_radius / MARGIN * np.array([smallest_struck(geometry.shape), 1.0])
-    return _sizes(geometry.target, radii, STRUCK_REFINEMENT, numerics)
+    radii = np.array(struck_ends(geometry.shape, numerics))
+    return _sizes(geometry.target, radii, STRUCK_REFINEMENT, numerics)[1]
 
 
 def _sizes(target: Target, radii: Array, refinement: float, numerics: Numerics) -> tuple[ORing, Sizes]:
@@ -80,14 +73,10 @@ def _sizes(target: Target, radii: Array, refinement: float, numerics: Numerics) 
 
 
 @cached
-def _struck(poisson: float, relaxation: Relaxation, target: ORing, sizes: Sizes) -> Stacked:
-    operator = operator_of(_body.recipe(*sizes), poisson)
-    return Stacked(operator, (BodySide(operator, relaxation, operator.trace, target.lead),), target.section_radius)
-
-
-@cached
-def _relaxing(relaxation: Relaxation, moduli: Moduli, target: ORing, sizes: Sizes, pace: Pace) -> Stacked:
-    side = replace(BulkSide.of(_body.recipe(*sizes), moduli, pace, relaxation), share=target.lead)
+def _stacked(geometry: Geometry, sizes: Sizes, pace: Pace | None = None) -> Stacked:
+    target = geometry.target
+    assert isinstance(target, ORing)
+    side = replace(side_of(_body.recipe(*sizes), geometry.material, geometry.shape, pace), share=target.lead)
     return Stacked(side.operator, (side,), target.section_radius)
 
 
@@ -96,7 +85,7 @@ def _body(elements: float, order: int, smallest: float, contact: float, mean_rad
     """In units of the section's radius, points and ``contact`` in rad from its top."""
     basis = basis_on(made(meshes.o_ring, elements, smallest, contact, mean_radius, order), order)
     fixed = held(basis, along=(), across=("base",))
-    return ElasticBody(basis, partial(axisymmetric, basis), fixed, crown(basis, contact, mean_radius))
+    return ElasticBody.alone(basis, fixed, crown(basis, contact, mean_radius))
 
 
 MEMBER = MeshedTarget(still, struck=struck, relaxing=relaxing, seconds=3.5, paired=True, solid=solid)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -13,7 +12,7 @@ import meshes
 from fe_contact.assembly.cache import cached
 from fe_contact.assembly.disk_cache import on_disk
 from fe_contact.assembly.forms import Array, isotropic, stiffness
-from fe_contact.assembly.operators import ElasticBody, SolidMesh, axisymmetric, basis_on, made
+from fe_contact.assembly.operators import ElasticBody, SolidMesh, basis_on, made
 from fe_contact.assembly.surface import face
 from fe_contact.bodies.pressing import FINITE_REFINEMENT, Pressed, Still, held
 from fe_contact.settings import Numerics
@@ -93,7 +92,7 @@ def _solid_block(elements: float, order: int, half_height: float, sides: str, fa
     """Of unit radius, no finer at its corners, where stresses are infinite."""
     basis = basis_on(made(meshes.prism, elements, half_height, False), order)
     fixed = held(basis, along=_still_radially(sides, faces), across=("base",))
-    return ElasticBody(basis, partial(axisymmetric, basis), fixed, face(basis, 1.0))
+    return ElasticBody.alone(basis, fixed, face(basis, 1.0))
 
 
 def _still_radially(sides: str, faces: str) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ from fe_contact.assembly.forms import Array, Matrix, elastic, polar_stiffness
 from fe_contact.assembly.operators import ElasticBody, SolidMesh, basis_on, made
 from fe_contact.assembly.surface import flat
 from fe_contact.bodies.pressing import (
+    FINITE_MARGIN,
     FINITE_REFINEMENT,
     LINE_REFINEMENT,
     MARGIN,
@@ -49,7 +50,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
 
 def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:
     """The ring for large strains; ``radii``, m of arc: those of the contacts expected."""
-    target, zone = indenter.target, Zone.finite(radii)
+    target, zone = indenter.target, Zone.of(radii, FINITE_MARGIN)
     assert isinstance(target, Ring)
     reference = min(zone.reference, WIDEST * target.inner_radius)
     angle, thickness = reference / target.inner_radius, thickness_over(reference, target.thickness)

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import meshes
 from fe_contact.assembly.cache import Recipe, cached
 from fe_contact.assembly.forms import Array
-from fe_contact.assembly.operators import ElasticBody, SolidMesh, axisymmetric, basis_on, made
+from fe_contact.assembly.operators import ElasticBody, SolidMesh, basis_on, made
 from fe_contact.assembly.surface import face
 from fe_contact.bodies.bulk_memory import Moduli
 from fe_contact.bodies.pressing import FINITE_REFINEMENT, BodyStill, Still, held, thickness_over
 from fe_contact.settings import Numerics
 from fe_contact.steppers import bulk_surface
-from fe_contact.steppers.bulk_surface import BulkSurface
+from fe_contact.steppers.bulk_surface import BulkSurface, Pace
 from fe_contact.steppers.scaled_surface import on_mesh
 from fe_contact.targets.base import MeshedTarget
 from lumped.scene.geometry import Geometry
@@ -47,7 +45,7 @@ def relaxing(geometry: Geometry, numerics: Numerics) -> BulkSurface:
     target, rim = geometry.target, geometry.target.fixed_radius(geometry.shape)
     assert isinstance(target, Washer)
     moduli = Moduli.of(geometry.material, geometry.shape.total)
-    return bulk_surface.relaxing(meshed(geometry, numerics), moduli, numerics, target.height, rim)
+    return bulk_surface.relaxing(meshed(geometry, numerics), moduli, Pace.of(numerics), target.height, rim)
 
 
 def meshed(geometry: Geometry, numerics: Numerics) -> Recipe[ElasticBody]:
@@ -70,7 +68,7 @@ def _body(
     """Of unit height, loaded up to the rim alone; ``graded`` to the corners of a bonded base."""
     basis = basis_on(made(meshes.washer, elements, inner, outer, rim, bonded and graded), order)
     fixed = held(basis, along=("base",) if bonded else (), across=("base",))
-    return ElasticBody(basis, partial(axisymmetric, basis), fixed, face(basis, rim))
+    return ElasticBody.alone(basis, fixed, face(basis, rim))
 
 
 MEMBER = MeshedTarget(still, relaxing=relaxing, solid=solid)

@@ -144,16 +144,19 @@ def certify(runs: WaveRuns, numerics: WaveNumerics) -> Several:
 def _judged(runs: WaveRuns, number: int, numerics: WaveNumerics) -> Judged:
     """One contact of all runs."""
     contact = runs.follow(numerics).contacts[number]
-    cheap, changed = numerics.varied(steps=runs.cheap), partial(_changed, partial(runs.curve, number))
+    cheap, curve = numerics.varied(steps=runs.cheap), partial(runs.curve, number)
     (mesh, by_mesh), half = tells_of_mesh(cheap), numerics.varied(steps=numerics.steps // 2)
     penalty, stiffer = other_setting(cheap, "penalty")
     coarse = min(cheap, mesh, key=attrgetter("elements_per_contact"))  # it is fine enough to tell of the far field
     far, farther = other_setting(coarse, "far_radius")
     changes: dict[str, Causes] = {
-        "mesh": (changed(cheap, mesh, by_mesh), reading(contact.march, contact.strike, numerics)),
-        "penalty": (changed(cheap, penalty, factor(ORDER["penalty"], stiffer)),),
-        "time_step": (changed(numerics, half, factor(ORDER["time_step"], False), EndMoved),),
-        "far_field": (changed(coarse, far, factor(ORDER["far_field"], farther)),),
+        "mesh": (
+            Moved.between(curve(cheap), curve(mesh), by_mesh),
+            reading(contact.march, contact.strike, numerics),
+        ),
+        "penalty": (Moved.between(curve(cheap), curve(penalty), factor(ORDER["penalty"], stiffer)),),
+        "time_step": (EndMoved.between(curve(numerics), curve(half), factor(ORDER["time_step"], False)),),
+        "far_field": (Moved.between(curve(coarse), curve(far), factor(ORDER["far_field"], farther)),),
     }
     return curve_of(contact.march, contact.strike, numerics), changes
 
@@ -189,18 +192,6 @@ class EndMoved(Moved):
         """Error of every quantity, in its unit."""
         errors = super().errors
         return errors | {"duration": errors["duration"] * UNORDERED / self.factor}
-
-
-def _changed(
-    curve: Callable[[WaveNumerics], Curve | None],
-    first: WaveNumerics,
-    second: WaveNumerics,
-    trusted: float,
-    kind: type[Moved] = Moved,
-) -> Variation | None:
-    """Variation between settings, ``trusted`` so many times as the error of the first; None where either failed."""
-    one, other = curve(first), curve(second)
-    return None if one is None or other is None else kind(one, other, trusted)
 
 
 def curve_of(march: March, strike: Strike, numerics: Numerics, share: float = 1.0) -> Curve:

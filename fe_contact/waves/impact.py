@@ -37,6 +37,7 @@ from fe_contact.dynamics.schemes import generalised_alpha
 from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
 from fe_contact.dynamics.stepping import Enforced, ExplicitStepper, ImplicitStepper
 from fe_contact.errors import MemoryTooSmall, TooManySteps
+from fe_contact.march.impact import balanced
 from fe_contact.march.impacts import Grounded
 from fe_contact.progress import Counted, uncounted
 from fe_contact.settings import WaveNumerics
@@ -86,7 +87,10 @@ def record(moving: Moving, found: Motion, scene: Scene) -> March:
     """The history from touch to separation as of any march; forces are what the striker's momentum says."""
     (_, last), separated = found.seen[-1], left(found.samples[-1])
     pressed = found.samples[:-1] if separated else found.samples
-    end, spread = _parting(found, scene.profile.exponent_of_force, last) if separated else (pressed[-1].time, 0.0)
+    end, spread = (pressed[-1].time, 0.0)
+    if separated:  # the last is known to a step where too few of them tell
+        told = parting(found.time, found.force, scene.profile.exponent_of_force)
+        end, spread = told or (last, found.time[-1] - found.time[-2])
     time = np.append([s.time for s in pressed], end) if separated else np.array([s.time for s in pressed])
     depth, speed = np.array([(float(s.displacement[0]), float(s.velocity[0])) for s in found.samples]).T
     momentum = scene.reduced_mass * (scene.velocity - speed + scene.gravity * found.time)
@@ -106,11 +110,6 @@ def record(moving: Moving, found: Motion, scene: Scene) -> March:
         first_force=0.0,
         work=Work(len(found.samples) - 1, len(found.samples) - 1, sum(s.iterations for s in found.samples)),
     )
-
-
-def _parting(found: Motion, exponent: float, last: float) -> tuple[float, float]:
-    """When contact ends, s, and how well that is read: the ``last`` to a step where too few of them tell."""
-    return parting(found.time, found.force, exponent) or (last, found.time[-1] - found.time[-2])
 
 
 def _radius(moving: Moving, sample: Sample) -> float:
@@ -137,7 +136,7 @@ def energies(moving: Moving, found: Motion, scene: Scene) -> dict[str, float]:
 def account(found: Motion, mass: float, waves: float = 0.0) -> dict[str, float]:
     """Terms in J at the end, of a ``mass``, kg, that moves as what is watched; ``waves`` that never come back."""
     last, out = found.samples[-1].energies, 0.5 * mass * float(found.samples[-1].velocity[0]) ** 2
-    terms = {
+    return balanced({
         "in": last.work,
         "out": out,
         "stored": last.rigid + last.deformable + last.strain - out - waves,
@@ -145,9 +144,7 @@ def account(found: Motion, mass: float, waves: float = 0.0) -> dict[str, float]:
         "radiated": last.radiated + waves,
         "contact": last.contact,
         "numerical": last.numerical,
-    }
-    terms["residual"] = 2 * terms["in"] - sum(terms.values())
-    return terms
+    })  # fmt: skip
 
 
 def parting(time: Array, force: Array, exponent: float) -> tuple[float, float] | None:
@@ -245,7 +242,7 @@ class Flights:
         while moment.state.time < until:
             stepper = self._steppers.of(DAMPED, 2.0**level * self._step)
             state = self._flown(moment, stepper)
-            if not _met(state):
+            if state.signed_pressure.max() <= 0.0:  # the surfaces do not overlap
                 moment, taken = _entered(moment, stepper, state), taken + 1
                 if taken >= self._patience and level < highest:
                     level, taken = level + 1, 0
@@ -280,8 +277,3 @@ class Flights:
 def _entered(moment: Moment, stepper: ExplicitStepper | ImplicitStepper, state: BodyState) -> Moment:
     """A step further in the account of energy too."""
     return Moment(state, account_after(moment.energies, stepper, moment.state, state))
-
-
-def _met(state: BodyState) -> bool:
-    """Whether the surfaces overlap anywhere."""
-    return bool(state.signed_pressure.max() > 0.0)

@@ -10,16 +10,16 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import ClassVar, Protocol
+from typing import ClassVar
 
 import numpy as np
 
 from fe_contact.assembly.forms import Array
-from fe_contact.budget.budget import Contacts
+from fe_contact.budget.budget import Contacts, Solution
 from fe_contact.budget.curve import PEAK_SHARE
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer
-from fe_contact.budget.variation import SAFETY
+from fe_contact.budget.variation import SAFETY, largest_around
 from fe_contact.progress import Count, Counted, Progress
 from fe_contact.settings import Given, Numerics, WaveNumerics
 from fe_contact.waves.line_reading import DENT, DEPTH, FORCE, ROUNDING, TIME, VELOCITY, RodReading
@@ -56,10 +56,11 @@ class Run:
 
 
 @dataclass(frozen=True, eq=False)
-class Line:
+class Line(Solution):
     """A march, the same with one cause of error varied, by cause, half the steps among them; a ``quarter`` of them.
 
-    ``runs``: all marches made so far, with other settings too.
+    ``runs``: all marches made so far, with other settings too. The tolerance rules what all contacts tell together; no
+    bars of the energies are known.
     """
 
     scene: Scene
@@ -75,28 +76,14 @@ class Line:
         return self.fine.reading.separated
 
     @property
-    def parts(self) -> tuple[Mapping[str, Quantity], ...]:
-        """One: the tolerance rules what all contacts tell together."""
-        return (self.quantities,)
-
-    @property
     def contacts(self) -> Contacts:
         """Every contact, where there may be several."""
         return self.fine.contacts
 
     @property
-    def grounded(self) -> None:
-        """Nothing is missing."""
-
-    @property
     def energy(self) -> Mapping[str, float]:
         """The account at the end, J."""
         return self.fine.energy
-
-    @property
-    def energy_errors(self) -> Mapping[str, float]:
-        """None is known."""
-        return {}
 
     @property
     def counted(self) -> Mapping[str, int]:
@@ -121,8 +108,7 @@ class Line:
             rows = np.hstack([rows, more])[:, np.argsort(np.append(rows[TIME], between), kind="stable")]
         change = np.maximum(_largest(fine, coarse), 0.5 * _largest(coarse, coarser))
         width = int(COMPARED * min(max(AWAY, self.safety * self.moved / rows[TIME, -1]), 1.0))
-        around = np.lib.stride_tricks.sliding_window_view(np.pad(change, width, mode="edge"), 2 * width + 1).max(axis=1)
-        error = self.safety * np.interp(rows[TIME], _places(fine), around)
+        error = self.safety * np.interp(rows[TIME], _places(fine), largest_around(change, width))
         flat, curve = self.scene.profile.fixed_radius, self.scene.profile.load_curve
         radius = np.full(rows.shape[1], flat) if flat is not None else curve.contact_radius(rows[DENT])
         return History(rows[TIME], rows[DEPTH], rows[VELOCITY], rows[FORCE], np.asarray(radius), error)
@@ -327,15 +313,10 @@ def _places(fine: RodReading) -> Array:
     return np.linspace(0.0, fine.rows[TIME, -1] * (1.0 - ROUNDING), COMPARED)
 
 
-class LineMarch(Protocol):
-    """One march of a scene with some settings, its steps ``counted``. Raises NotReached where it does not end."""
-
-    def __call__(self, numerics: WaveNumerics, counted: Counted = ...) -> Run: ...
-
-
 @dataclass(frozen=True, eq=False)
 class Doubling:
-    """``march`` of a scene with settings, and those with one cause of error ``varied`` at a time; ``most_steps``.
+    """``march`` of a scene with settings, its steps counted, which raises NotReached where it does not end; those with
+    one cause of error ``varied`` at a time; ``most_steps``.
 
     ``dented``: whether what was found, a dent, says more of what the model leaves out than the plan. Each march is made
     once: with twice the steps, the one before is what half of them give. ``bars``: the largest one by steps.
@@ -343,7 +324,7 @@ class Doubling:
 
     scene: Scene
     chosen: Plan
-    march: LineMarch
+    march: Callable[[WaveNumerics, Counted], Run]
     varied: Callable[[WaveNumerics], Mapping[str, WaveNumerics]]
     most_steps: float
     dented: bool

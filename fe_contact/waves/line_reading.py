@@ -15,13 +15,13 @@ import numpy as np
 import numpy.typing as npt
 
 from fe_contact.assembly.forms import Array
+from fe_contact.budget.budget import Contacts
 from fe_contact.dynamics.march import Motion, Sample
 from lumped.numbers import peak
 from lumped.scene.scene import Scene
 
 TIME, DEPTH, VELOCITY, FORCE, DENT = range(5)  # rows of a reading
 Steps = npt.NDArray[np.intp]
-Contacts = tuple[Mapping[str, float | None], ...]
 TELLING = 3  # steps on either side of a front that tell the force there
 SPOILED = 2  # steps behind a front
 LASTING = 0.5  # of the force before a front, which it would still have had

@@ -24,7 +24,6 @@ from lumped.result.model_ledger import Peak, model_ledger
 from lumped.scene.scene import Scene
 
 DEFAULT_TOLERANCE = 3e-3  # of a peak force; what chatter at the contact's edge leaves is about a third
-SPRINGS = 32  # along the contact radius: scales within one per cent place everything well
 ELEMENTS = 9.0  # along every contact radius
 FINER = 2.0  # times as many at the surface where dashpots carry much: pressure is infinite at an edge that advances
 PENALTY = 120.0  # default: the contact penalty, before stiffness and dashpots raise it

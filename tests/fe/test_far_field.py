@@ -18,6 +18,7 @@ from fe_contact.budget.plan import plan
 from fe_contact.budget.runs import Runs
 from fe_contact.budget.variation import compliance_change
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
+from fe_contact.contact.problem import ContactProblem
 from fe_contact.settings import Numerics
 from fe_contact.steppers.scaled_surface import ScaledSurface
 from fe_contact.steppers.steps import Strike
@@ -135,7 +136,7 @@ def test_the_force_error_falls_at_least_with_the_square_of_the_far_radius(
     for far_radius in (2.5, 5.0, 10.0, 80.0):
         operator = half_space.surface(nu, settings_of(hertz_strike(), far_radius=far_radius))
         points = operator.operator.points
-        problem = operator.problem(depth - profile.height(contact / phase * points), 1e3, 0.0)
+        problem = ContactProblem(operator.pressed, depth - profile.height(contact / phase * points), 1e3)
         solution = corrected.enforce(problem, points < phase)
         assert solution.converged
         forces.append(contact / phase * float(operator.operator.weights @ solution.pressure))

@@ -13,11 +13,10 @@ import pytest
 
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import SolidMesh
-from fe_contact.bodies.extruded import Pressable, _length, _stiffness, extruded
 from fe_contact.cli import main
 from fe_contact.errors import SolidTooLarge
 from fe_contact.indentation import expected, settings
-from fe_contact.studies.finite_length import Bodies, free_ends
+from fe_contact.studies.finite_length import Bodies, Pressable, _length, _stiffness, extruded, free_ends
 from fe_contact.studies.larger_models import MeasuredEffect, measure
 from fe_contact.targets.base import TARGETS
 from lumped import Scene
@@ -165,7 +164,7 @@ def test_bars_hold_what_finer_meshes_find_and_the_ledger_is_right(
         indenter, depth = drawn(rng)
         found, radius = free_ends(indenter, depth), contact(indenter, depth)
         with monkeypatch.context() as patch:
-            patch.setattr("fe_contact.bodies.extruded.MOST_ENTRIES", LARGE)
+            patch.setattr("fe_contact.studies.finite_length.MOST_ENTRIES", LARGE)
             finer = Bodies.of(indenter, radius, 4, elements=2.0, first=0.5, far=1.5)
         apart = abs(float(finer.changes(np.array([depth]), 4.0)[0]) - found.change)
         what = f"{indenter.target} {indenter.shape} nu {indenter.material.nu} depth {depth}: {found}"

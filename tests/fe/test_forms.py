@@ -10,11 +10,13 @@ from skfem import Basis, BilinearForm, ElementTriP1, FacetBasis, LinearForm, Mes
 
 import meshes
 from fe_contact.assembly.forms import isotropic, stiffness
-from fe_contact.assembly.operators import ORDERS, element, surface_operator, system_matrix
+from fe_contact.assembly.operators import element, system_matrix
+from fe_contact.targets import half_space
 
 RNG = np.random.default_rng(11)
 RADIUS, HEIGHT, YOUNG = 1.7, 0.9, 3.0
 POISSON = (0.0, 0.3, 0.49, 0.4999)
+ORDERS = range(1, 5)  # of elements, which settings accept
 BODY_FORMS = [(order, nu) for order in ORDERS for nu in POISSON]
 
 
@@ -163,7 +165,7 @@ def test_body_and_far_field_together_are_positive_definite(order: int, nu: float
 @pytest.mark.parametrize("nu", POISSON)
 def test_the_condensed_surface_is_symmetric_and_moves_towards_its_load(nu: float) -> None:
     """Maxwell's reciprocity of the compliance before anything symmetrises it; a positive definite stiffness."""
-    operator = surface_operator(meshes.half_space(2.0, 20.0), 3, nu).operator
+    operator = half_space._whole(nu, 2.0, 3, 20.0).operator
     compliance = operator.response[: len(operator.stiffness)]
     assert np.abs(compliance - compliance.T).max() < 1e-9 * np.abs(compliance).max()
     assert np.linalg.eigvalsh(operator.stiffness)[0] > 0
@@ -172,7 +174,7 @@ def test_the_condensed_surface_is_symmetric_and_moves_towards_its_load(nu: float
 
 
 def test_the_quadrature_of_the_zone_integrates_polynomials_exactly() -> None:
-    operator = surface_operator(meshes.half_space(1.0, 5.0), 3, 0.3).operator
+    operator = half_space._whole(0.3, 1.0, 3, 5.0).operator
     order = operator.order
     nodes = operator.nodes[: operator.trace.shape[1]]
     end = nodes[-1]

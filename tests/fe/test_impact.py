@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -434,24 +434,24 @@ def test_lee_and_radoks_law_has_the_exact_peak(scene_of: Scenes) -> None:
 # the uncondensed route
 
 
-@dataclass(frozen=True)
-class WholeProblem:
-    """Contact with all degrees of freedom of mesh and striker: nothing condensed, nothing inverted beforehand."""
+class WholeSurface(NamedTuple):
+    """A body with all degrees of freedom of its mesh: nothing condensed, nothing inverted beforehand."""
 
     matrix: sparse.csc_matrix
     trace: sparse.csr_matrix
     weights: np.ndarray
-    overlap: np.ndarray
-    penalty: float
 
 
-def solve_whole(problem: WholeProblem, touching: np.ndarray) -> ContactSolution:
-    """Plain active sets, the sparse matrix factorised anew in every iteration."""
+def solve_whole(problem: Any, touching: np.ndarray) -> ContactSolution:
+    """Plain active sets of body and striker, the sparse matrix factorised anew in every iteration."""
+    body, striker = problem.surface, sparse.csc_matrix([[1 / problem.yielding]])
+    matrix = sparse.block_diag([body.matrix, striker]).tocsc()
+    trace = sparse.hstack([body.trace, sparse.csr_matrix(np.ones((len(problem.overlap), 1)))]).tocsr()
     for iteration in range(1, 60):
-        springs = sparse.diags(problem.penalty * problem.weights * touching)
-        system = problem.matrix + problem.trace.T @ springs @ problem.trace
-        motion = spsolve(system.tocsc(), problem.trace.T @ (springs @ problem.overlap))
-        left = problem.overlap - problem.trace @ motion
+        springs = sparse.diags(problem.penalty * body.weights * touching)
+        system = matrix + trace.T @ springs @ trace
+        motion = spsolve(system.tocsc(), trace.T @ (springs @ problem.overlap))
+        left = problem.overlap - trace @ motion
         if np.array_equal(left > 0, touching):
             return ContactSolution(problem.penalty * left, iteration, True, (touching,))
         touching = left > 0
@@ -472,17 +472,10 @@ class Uncondensed(ScaledSurface):
         axial = sparse.coo_matrix((-at_points.data, places), shape)  # pressing is downwards
         return system_matrix(basis, self.operator.poisson)[free][:, free].tocsc(), axial.tocsr()[:, free], free
 
-    def problem(self, overlap: np.ndarray, penalty: float, yielding: float) -> Any:
+    @property
+    def pressed(self) -> Any:
         matrix, trace, _ = self._system()
-        striker = sparse.csc_matrix([[1 / yielding]])
-        column = sparse.csr_matrix(np.ones((len(overlap), 1)))
-        return WholeProblem(
-            sparse.block_diag([matrix, striker]).tocsc(),
-            sparse.hstack([trace, column]).tocsr(),
-            self.operator.weights,
-            overlap,
-            penalty,
-        )
+        return WholeSurface(matrix, trace, self.operator.weights)
 
     def response(self, pressure: np.ndarray) -> np.ndarray:
         matrix, trace, free = self._system()

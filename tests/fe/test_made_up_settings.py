@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from types import SimpleNamespace
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 import pytest
@@ -219,5 +219,6 @@ def test_an_end_that_longer_steps_move_errs_by_more_than_twice_that_whatever_is_
 
 @pytest.mark.parametrize("fails", ["first", "second"])
 def test_a_setting_whose_run_fails_tells_nothing(fails: str) -> None:
-    known, settings = Curve.of(march(STEPS, 0.0), STRIKE), (cast("Any", "first"), cast("Any", "second"))
-    assert waves._changed(lambda one: None if one == fails else known, *settings, 1.0) is None
+    known = Curve.of(march(STEPS, 0.0), STRIKE)
+    runs = (None if one == fails else known for one in ("first", "second"))
+    assert waves.Moved.between(*runs, 1.0) is None

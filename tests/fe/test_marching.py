@@ -54,11 +54,8 @@ class Spring:
     def stored(self, memory: Any) -> float:
         return float(0.5 * STIFFNESS * memory**2)
 
-    def dissipated(self, before: Any, after: Any, length: float) -> float:
-        return 0.0
-
-    def lost(self, before: Any, after: Any, length: float) -> float:
-        return 0.0
+    def spent(self, before: Any, after: Any, length: float) -> tuple[float, float]:
+        return 0.0, 0.0
 
     def between(self, before: State, step: Step) -> float:
         """What a force that belongs elsewhere in the step does beside the spring's own."""

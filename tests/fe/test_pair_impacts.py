@@ -16,8 +16,6 @@ import numpy as np
 import pytest
 
 import fe_contact
-import meshes
-from fe_contact.assembly.operators import surface_operator
 from fe_contact.budget.certify import MESH_ORDER_ANYWHERE, other_mesh
 from fe_contact.budget.plan import plan
 from fe_contact.contact.enforcement import exact
@@ -29,6 +27,7 @@ from fe_contact.steppers.stacked import BodySide, Stacked, stacked
 from fe_contact.steppers.steps import Strike
 from fe_contact.steppers.struck import Deformable
 from fe_contact.studies.compare.study import known
+from fe_contact.targets import half_space
 from fe_contact.targets.base import struck
 from lumped import Material, Relaxation, Result, Scene, Sphere, laws, simulate
 from lumped.shapes.cylinder import Cylinder as Roller
@@ -258,7 +257,7 @@ def test_two_bodies_of_constant_bulk_modulus_tend_to_elastic_ones(pace: float, a
 @pytest.mark.parametrize("sides", [1, 2])
 def test_what_two_bodies_feel_is_read_where_they_can_follow_it(sides: int) -> None:
     """A pressure that runs evenly over the angles: at the nodes of one mesh, at the corners where two have to agree."""
-    operator = surface_operator(meshes.half_space(4.0, 20.0), 4, 0.3).operator
+    operator = half_space._whole(0.3, 4.0, 4, 20.0).operator
     body, anything = 0.05, cast("Any", None)
     places, pressure = Stacked(operator, (anything,) * sides, body).felt(
         cast("Any", SimpleNamespace(pressure=2.0 - operator.points))
@@ -270,7 +269,7 @@ def test_what_two_bodies_feel_is_read_where_they_can_follow_it(sides: int) -> No
 
 def test_what_presses_one_body_is_found_again_at_every_node_of_it() -> None:
     """From the overlap that it causes, kept out exactly: a pressure as rough as the body's own shape functions."""
-    operator = surface_operator(meshes.half_space(4.0, 20.0), 4, 0.3).operator
+    operator = half_space._whole(0.3, 4.0, 4, 20.0).operator
     surface = stacked(operator, (BodySide(operator, Relaxation(1.0), operator.trace),), (1.0,))
     nodal = 1.5 + np.random.default_rng(13).uniform(-1.0, 1.0, operator.trace.shape[1])
     pressure = operator.trace @ nodal
@@ -282,7 +281,7 @@ def test_what_presses_one_body_is_found_again_at_every_node_of_it() -> None:
 
 def test_a_lone_body_yields_as_it_was_meshed() -> None:
     """A half-space of E* = 1 under Hertz's pressure sinks in by pi/4 (2 - r^2), but for its coarse mesh."""
-    operator = surface_operator(meshes.half_space(2.0, 5.0), 3, 0.3).operator
+    operator = half_space._whole(0.3, 2.0, 3, 5.0).operator
     surface = stacked(operator, (BodySide(operator, Relaxation(1.0), operator.trace),), (1.0,))
     inside = operator.points < 1.0
     moved = surface.displaced(operator.weights * np.sqrt(np.maximum(1.0 - operator.points**2, 0.0)))
@@ -291,7 +290,7 @@ def test_a_lone_body_yields_as_it_was_meshed() -> None:
 
 def test_what_presses_two_bodies_moves_each_by_its_own_modulus() -> None:
     """Of one shape they yield as one body whose compliance is the sum; kept out exactly, the pressure returns."""
-    operator = surface_operator(meshes.half_space(4.0, 20.0), 4, 0.3).operator
+    operator = half_space._whole(0.3, 4.0, 4, 20.0).operator
     side = BodySide(operator, Relaxation(1.0), operator.trace)
     one, two = stacked(operator, (side,), (1.0,)), stacked(operator, (side, side), (1.25, 5.0))
     assert two.carriers is not None
@@ -304,7 +303,7 @@ def test_what_presses_two_bodies_moves_each_by_its_own_modulus() -> None:
 
 def test_two_bodies_together_sink_in_by_what_each_does() -> None:
     """Of moduli 5/4 and 5, in series 1, in one step by the pressure at its end: as one body of that modulus."""
-    operator = surface_operator(meshes.half_space(4.0, 20.0), 4, 0.3).operator
+    operator = half_space._whole(0.3, 4.0, 4, 20.0).operator
     sides = tuple(BodySide(operator, Relaxation(young), operator.trace) for young in (1.25, 5.0))
     body = Stacked(operator, sides, 0.05).body(Relaxation(1.0), SCHEMES.get("backward_euler"), 1.0)
     pressure = 2.0 - operator.points

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 
 import meshes
-from fe_contact.assembly.operators import ElasticBody, axisymmetric, basis_on
+from fe_contact.assembly.operators import ElasticBody, basis_on
 from fe_contact.assembly.surface import flat
 from fe_contact.bodies.pressing import held
 from fe_contact.methods import simulate
@@ -41,7 +40,7 @@ def end(nu: float, radius: float, elements: float = FINE) -> End:
     """Of a rod of this radius, its far end on rollers; displacement in the work of the pressure."""
     basis = basis_on(meshes.layer(elements, 1.0, LONG * radius, radius - 1.1), 4)
     fixed = held(basis, along=("axis",), across=("base",))
-    operator = ElasticBody(basis, partial(axisymmetric, basis), fixed, flat(basis)).condensed(nu).operator
+    operator = ElasticBody.alone(basis, fixed, flat(basis)).condensed(nu).operator
     pressure = np.sqrt(np.maximum(1.0 - operator.points**2, 0.0))
     weighed = operator.weights * pressure
     displacement = operator.trace @ operator.compliance @ (operator.trace.T @ weighed)

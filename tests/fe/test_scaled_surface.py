@@ -12,14 +12,12 @@ import numpy as np
 import pytest
 
 import lumped
-import meshes
 from fe_contact.assembly.far_field import boussinesq
-from fe_contact.assembly.operators import surface_operator
 from fe_contact.bodies.memory import area_weights, graded
 from fe_contact.bodies.pressing import EDGE_WINDOW
 from fe_contact.budget.plan import plan
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
-from fe_contact.contact.problem import ContactSolution
+from fe_contact.contact.problem import ContactProblem, ContactSolution
 from fe_contact.errors import ContactLost
 from fe_contact.settings import Numerics
 from fe_contact.steppers.scaled_surface import ScaledSurface, Stepper, _missed
@@ -48,7 +46,7 @@ class Indentation:
 
 
 def surface(nu: float, elements: float = 4.0, order: int = 4, far_radius: float = 20.0) -> ScaledSurface:
-    return ScaledSurface(surface_operator(meshes.half_space(elements, far_radius), order, nu).operator)
+    return ScaledSurface(half_space._whole(nu, elements, order, far_radius).operator)
 
 
 def indent(
@@ -62,7 +60,7 @@ def indent(
     """Indent so that the exact edge lies at ``phase`` of the unit mesh."""
     scale, points, curve = contact / phase, body.operator.points, profile.load_curve
     height = np.minimum(profile.height(scale * points), 1e3)
-    problem = body.problem(float(curve.depth(contact)) - height, stiffness, 0.0)
+    problem = ContactProblem(body.pressed, float(curve.depth(contact)) - height, stiffness)
     solution = enforcement.enforce(problem, points < phase)
     assert solution.converged
     force = scale * float(body.operator.weights @ solution.pressure)
@@ -150,9 +148,9 @@ def test_a_yielding_striker_is_a_striker_pushed_in_less(body: ScaledSurface, yie
     """Two routes: the striker as one more unknown, and held where its own force has put it."""
     points = body.operator.points
     free = 0.04 - Parabola(1.0).height(0.15 * points)
-    together = penalty.enforce(body.problem(free, 1000.0, yielding), points < 1)
+    together = penalty.enforce(ContactProblem(body.pressed, free, 1000.0, yielding), points < 1)
     force = float(body.operator.weights @ together.pressure)
-    held = penalty.enforce(body.problem(free - yielding * force, 1000.0, 0.0), points < 1)
+    held = penalty.enforce(ContactProblem(body.pressed, free - yielding * force, 1000.0), points < 1)
     assert force > 0
     np.testing.assert_allclose(together.pressure, held.pressure, atol=1e-8 * held.pressure.max())
 
@@ -200,7 +198,7 @@ def test_a_contact_of_a_few_points_on_a_half_plane_is_found_from_any_guess() -> 
         few = int(rng.integers(2, 15))
         overlap = 1.0 - 10 ** rng.uniform(-3, -1) * (points / points[few]) ** 2
         overlap[:few] -= 10 ** rng.uniform(-5, -2) * rng.random(few)
-        problem = body.problem(overlap, 1e3 / points[few], yielding)
+        problem = ContactProblem(body.pressed, overlap, 1e3 / points[few], yielding)
         assert corrected.enforce(problem, points < points[int(rng.integers(1, 40))]).converged
 
 
@@ -215,7 +213,7 @@ def test_what_a_straight_line_misses_is_the_faded_rest_of_how_a_gap_closes(ratio
         for depth, gap in ((0.02, wide), (0.06, narrow))
     )
     relaxation = Relaxation(1.0, (1.0, 2.0), tuple(length / ratio for ratio in ratios))
-    stepper = SimpleNamespace(radii=radii, heights=0.5 * radii**2, strike=SimpleNamespace(relaxation=relaxation))
+    stepper = SimpleNamespace(radii=radii, heights=0.5 * radii**2, relaxation=relaxation)
     made_up: Any = (stepper, before, SimpleNamespace(state=after, length=length, radius=radius))
     found = _missed(*made_up, edge)
     shares = (np.arange(4000) + 0.5) / 4000.0
@@ -248,7 +246,7 @@ class Settling:
             return SimpleNamespace(converged=True, iterations=3, sets=(points < edge,), edge=lambda at: edge)
 
         stepper: Any = SimpleNamespace(
-            surface=SimpleNamespace(operator=SimpleNamespace(points=points), problem=lambda *of: None),
+            surface=SimpleNamespace(operator=SimpleNamespace(points=points), pressed=None),
             radii=np.array([0.0, 1e3]),
             strike=SimpleNamespace(height=lambda radii: 0.5 * radii**2),
             numerics=SimpleNamespace(penalty=1.0, contact_radius=scale),

@@ -14,23 +14,20 @@ class Scheme(NamedTuple):
 
     u' = u + dt v + dt^2 [(1/2 - beta) a + beta a'] ,    v' = v + dt [(1 - gamma) a + gamma a'] .
 
-    ``beta`` = 0: the displacement at the step's end needs no solution.
+    ``beta`` = 0: the displacement at the step's end needs no solution. ``staged``: whether a step is taken in as many
+    equal stages as it asks for.
     """
 
     alpha_m: float
     alpha_f: float
     beta: float
     gamma: float
+    staged: bool = False
 
     @property
     def explicit(self) -> bool:
         """Whether displacements come before accelerations."""
         return self.beta == 0.0
-
-    @property
-    def staged(self) -> bool:
-        """Whether a step is taken in as many equal stages as it asks for."""
-        return False
 
 
 @dataclass(frozen=True)

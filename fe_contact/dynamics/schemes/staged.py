@@ -9,19 +9,9 @@ from __future__ import annotations
 from fe_contact.dynamics.schemes.base import Family, Scheme
 
 
-class _Staged(Scheme):
-    """Central difference's numbers, for stages."""
-
-    __slots__ = ()
-
-    @property
-    def staged(self) -> bool:
-        return True
-
-
 def of(rho: float) -> Scheme:
     """One member only."""
-    return _Staged(alpha_m=0.0, alpha_f=0.0, beta=0.0, gamma=0.5)
+    return Scheme(alpha_m=0.0, alpha_f=0.0, beta=0.0, gamma=0.5, staged=True)
 
 
 MEMBER = Family(of)

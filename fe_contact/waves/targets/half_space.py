@@ -19,7 +19,7 @@ from fe_contact.assembly.forms import Array, check_compressible, isotropic, mass
 from fe_contact.assembly.operators import basis_on, boundary, made, system_matrix
 from fe_contact.assembly.surface import flat
 from fe_contact.bodies.pressing import held
-from fe_contact.budget.plan import Plan
+from fe_contact.budget.plan import SPRINGS, Plan
 from fe_contact.dynamics.body import BodyState, Part
 from fe_contact.dynamics.march import march
 from fe_contact.fields import Fields, nodal_stress, subdivided, written
@@ -27,7 +27,7 @@ from fe_contact.settings import RANGES, Given, WaveNumerics
 from fe_contact.waves.balls import Ball, flying
 from fe_contact.waves.impact import choices_of
 from fe_contact.waves.moving import BEYOND, SMALLEST, Flying, Moving, UnitBody, WaveSide
-from fe_contact.waves.plan import SMOOTH_STEPS, SPREAD, SPRINGS, STEPS, TRAVEL, contact_time, placed
+from fe_contact.waves.plan import SMOOTH_STEPS, SPREAD, STEPS, TRAVEL, contact_time, placed
 from fe_contact.waves.targets.base import WaveTarget, too_fast
 from lumped.errors import BadInput, Fault
 from lumped.laws import mdr

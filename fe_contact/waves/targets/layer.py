@@ -9,7 +9,7 @@ import numpy as np
 import meshes
 from fe_contact.assembly.cache import cached_by_unknowns
 from fe_contact.assembly.far_field import on_boundary
-from fe_contact.assembly.forms import Basis, Matrix, check_compressible, mass, plane_mass
+from fe_contact.assembly.forms import Basis, Matrix, check_compressible, mass
 from fe_contact.assembly.operators import basis_on, boundary, made, moduli
 from fe_contact.assembly.surface import flat
 from fe_contact.bodies.pressing import held, thickness_over
@@ -22,7 +22,7 @@ from fe_contact.waves.plan import DEFAULTS, SPREAD, TRAVEL, contact_time, placed
 from fe_contact.waves.targets.base import WaveTarget, too_fast
 from lumped.errors import BadInput, Fault
 from lumped.laws.mdr import ImpactScales
-from lumped.materials import Material, Relaxation
+from lumped.materials import Relaxation
 from lumped.scene.scene import Scene
 from lumped.targets.layer import Layer
 
@@ -126,7 +126,7 @@ def unit_layer(
         flat(basis, 2 if plane else 3),
         fixed,
         masses,
-        local=lambda: plane_mass(basis) if plane else mass(basis),
+        local=lambda: mass(basis, plane),
         springs=lambda: [matrix(basis, plane, *one) for one in ((1.0, 0.0), (0.0, 1.0))],
         absorbing=lambda: [_side(basis, plane, component) for component in (0, 1)],
     )
@@ -162,13 +162,9 @@ def _dashpots(scene: Scene, unit: UnitBody, scale: float) -> Matrix:
     if material.young.viscosity:
         return None
     leaving = material.confined_modulus() if target.base == "bonded" else material.contact_modulus()
-    through, along = (_impedance(material, modulus) for modulus in (leaving.glassy, material.shear.glassy))
+    density, stiff = material.density or 0.0, (leaving.glassy, material.shear.glassy)
+    through, along = (math.sqrt(modulus * density) for modulus in stiff)  # Pa s/m
     return scale * (through * unit.dashpots[0] + along * unit.dashpots[1])
-
-
-def _impedance(material: Material, modulus: float) -> float:
-    """Pa s/m."""
-    return math.sqrt(modulus * (material.density or 0.0))
 
 
 MEMBER = WaveTarget.meshed(check, plan, lambda scene, numerics: [unit_of(scene, numerics)], moving)

@@ -5,11 +5,10 @@ A ball is in free flight before and after, its own waves stay in it.
 
 from __future__ import annotations
 
-from fe_contact.budget.plan import Plan
+from fe_contact.budget.plan import SPRINGS, Plan
 from fe_contact.settings import Given, WaveNumerics
 from fe_contact.waves.balls import Ball, flying, plan_in_flight
 from fe_contact.waves.moving import Flying
-from fe_contact.waves.plan import SPRINGS
 from fe_contact.waves.targets._block import BLOCK
 from fe_contact.waves.targets.base import WaveTarget, check_balls
 from lumped.laws import mdr
