@@ -21,11 +21,10 @@ from lumped.progress import counting_steps
 from lumped.result.result import UNITS, IndentationLeft, Result, largest_bar, provenance, unmet
 from lumped.scene.scene import Scene
 
-CURE = "cure: a larger tolerance, or fewer numerics of your own"
-NONE_MET = (  # as where a dashpot alone is watched long after the peak
-    "no tolerance that is accepted is met; cure: a shorter motion.end_time where the contact does not end, or fewer "
-    "numerics of your own"
-)
+CURE = "cure: a larger tolerance"
+# As where a dashpot alone is watched long after the peak.
+NONE_MET = "no tolerance that is accepted is met; cure: a shorter motion.end_time where the contact does not end"
+OWN = ", or fewer numerics of your own"  # where there are some
 
 Answer = TypeVar("Answer", bound=Solution, covariant=True)
 AnyAnswer = TypeVar("AnyAnswer", bound=Solution)
@@ -127,6 +126,9 @@ def _missed(scene: Scene, solved: SolvedBy[Solution], found: Solution) -> list[s
     largest = max(largest_bar(part) for part in found.parts)
     met = 10.0 ** (math.ceil(10.0 * math.log10(largest)) / 10.0) if math.isfinite(largest) else None  # rounded up
     if met is not None and met > RANGES["tolerance"][1]:
-        return [part for part in (*missed, solved.refused, NONE_MET) if part]
-    said = [*missed, solved.refused, "" if met is None else f"a tolerance of {met:.2g} is met", CURE]
+        said = [*missed, solved.refused, NONE_MET]
+    else:
+        said = [*missed, solved.refused, "" if met is None else f"a tolerance of {met:.2g} is met", CURE]
+    if solved.plan.pinned:
+        said[-1] += OWN
     return [part for part in said if part]

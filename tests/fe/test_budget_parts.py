@@ -324,12 +324,17 @@ def test_the_budget_of_a_result_is_that_of_its_peak_force_relative_to_it() -> No
         assert result.error_budget_by_quantity[name] == {cause: value * part for cause, part in share.items()}
 
 
+def limits(refused: str = "", pinned: tuple[str, ...] = ()) -> Any:
+    """Of a solved impact, what keeps it from its tolerance."""
+    return SimpleNamespace(refused=refused, plan=SimpleNamespace(pinned=pinned))
+
+
 def test_what_one_contact_misses_is_said_without_its_number() -> None:
     quantity = {name: Quantity(1.0, 1e-2 if name == "duration" else 1e-4, "") for name in UNITS}
     found: Any = SimpleNamespace(numerics=SimpleNamespace(tolerance=1e-3), parts=(quantity,))
     for impacts, said in ((1, "tolerance"), (2, "contact 1: tolerance")):
         scene: Any = SimpleNamespace(motion=SimpleNamespace(impacts=impacts))
-        first, *_ = solved._missed(scene, SimpleNamespace(refused=""), found)
+        first, *_ = solved._missed(scene, limits(), found)
         assert first == f"{said} 0.001 not reached: duration to 0.01"
 
 
@@ -339,10 +344,12 @@ def test_the_tolerance_that_is_met_is_said_where_it_is_known(error: float, met: 
     quantity = {name: Quantity(1.0, error if name == "duration" else 1e-4, "") for name in UNITS}
     found: Any = SimpleNamespace(numerics=SimpleNamespace(tolerance=1e-3), parts=(quantity,))
     scene: Any = SimpleNamespace(motion=SimpleNamespace(impacts=1))
-    said = "; ".join(solved._missed(scene, SimpleNamespace(refused=""), found))
+    said = "; ".join(solved._missed(scene, limits(), found))
     assert ("a tolerance of " in said) == bool(met)
     assert ("no tolerance that is accepted is met" in said) == (error == 2.3)
     assert not met or f"a tolerance of {met} is met" in said
+    assert "numerics of your own" not in said
+    assert solved._missed(scene, limits(pinned=("steps",)), found)[-1].endswith(", or fewer numerics of your own")
 
 
 @pytest.mark.parametrize("worst", [0, 1])
@@ -354,7 +361,7 @@ def test_of_several_contacts_the_tolerance_is_met_that_all_of_them_meet(worst: i
     ]
     found: Any = SimpleNamespace(numerics=SimpleNamespace(tolerance=1e-3), parts=tuple(parts))
     scene: Any = SimpleNamespace(motion=SimpleNamespace(impacts=3))
-    said = "; ".join(solved._missed(scene, SimpleNamespace(refused="so dear"), found))
+    said = "; ".join(solved._missed(scene, limits("so dear"), found))
     assert "a tolerance of 0.04 is met" in said
     assert "so dear" in said
     errors = ["0.039", "0.011"]
@@ -362,7 +369,7 @@ def test_of_several_contacts_the_tolerance_is_met_that_all_of_them_meet(worst: i
         assert f"contact {number}: tolerance 0.001 not reached: duration to {errors[number - 1 - worst]}" in said
     assert "contact 3" not in said
     found.parts = (parts[2], parts[2])
-    assert solved._missed(scene, SimpleNamespace(refused="so dear"), found) == []
+    assert solved._missed(scene, limits("so dear"), found) == []
 
 
 @pytest.mark.parametrize("few", [True, False])
