@@ -48,9 +48,9 @@ SCENES = (
 )  # fmt: skip
 LONG = (
     "polymer-o-ring", "polymer-half-plane", "polymer-layer-line", "rod-in-ring", "two-finite-spheres", "bar",
-    "steel-ball-waves", "rod",
+    "steel-ball-waves", "rod", "paper-ring-finite",
 )  # fmt: skip
-OWN = {"bar": 0.1}  # of a history that jumps, as its file has it
+OWN = {"bar": 0.1, "paper-ring-finite": 0.1}  # of a history that jumps, as its file has it; of large strains, dear
 LAWS = ("ting", "correspondence", "mdr")
 
 
