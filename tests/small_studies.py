@@ -78,7 +78,7 @@ for module, changes in SMALLER.items():
 if __name__ == "__main__":
     for place, name in CHARTS.items():  # charts follow from the rows
         chart = sys.modules[f"fe_contact.studies.{place}"] = ModuleType(name)
-        setattr(chart, name, lambda *_: ())
+        setattr(chart, name, lambda *_, **__: ())
     base.folder = begun
     asked = zip(sys.argv[1::2], sys.argv[2::2], strict=True)
     sys.exit(max([main([*COMMANDS[study], "--out", where, "--quiet"]) for study, where in asked]))

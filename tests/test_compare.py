@@ -57,7 +57,7 @@ def judgement(comparison: Comparison, name: str) -> Judgement:
 
 
 @pytest.mark.family
-@pytest.mark.parametrize("material", MATERIALS)
+@pytest.mark.parametrize("material", ["sls", pytest.param("kelvin-voigt", marks=pytest.mark.full)])
 @pytest.mark.parametrize("name", OF_GEOMETRY)
 def test_the_pressure_of_a_law_adds_up_to_its_force(name: str, material: str) -> None:
     scene = Scene.load("polymer-sphere", MATERIALS[material])

@@ -284,7 +284,7 @@ def test_logarithms_on_a_cone_are_right_at_both_ends(ratio: float) -> None:
 def test_tings_law_returns_the_rows_exponent(campaign_size: Callable[..., int]) -> None:
     """On random solids, whose moduli and time it is not told, within its bar."""
     random = np.random.default_rng(5)
-    for _ in range(campaign_size(200, 6)):
+    for _ in range(campaign_size(200, 6, most=10)):
         profile, ratio = SHAPES[random.integers(3)], 10.0 ** random.uniform(0.05, 1.1)
         scene = Impact(profile, ratio, 10.0 ** random.uniform(-2.5, 2.0), None, reading.EXACT).scene
         found = readers.ting(sampled(scene))

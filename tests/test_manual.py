@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import ast
+import inspect
 import json
 import re
 import shlex
 import tomllib
+from argparse import Namespace
 from collections.abc import Iterator
 from html.parser import HTMLParser
 from pathlib import Path
@@ -15,7 +18,9 @@ import pytest
 from told import told_columns, untold
 
 from fe_contact.cli import main, parser
-from fe_contact.commands import COMMANDS
+from fe_contact.commands import COMMANDS, base
+from fe_contact.commands.compare import law_names
+from fe_contact.commands.transfer import asked_of
 from fe_contact.manual.schemas import RESULT
 from fe_contact.manual.site import HERE, MENU
 from fe_contact.studies.stability.base import studies
@@ -25,6 +30,8 @@ from lumped.paper.claims import misprints
 from lumped.shapes import SHAPES
 
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+# How a command reads its scene, where that is not the usual way.
+READERS = {"fit": base.read_scene_for_fit, "indent": base.read_indenter}
 PAGES = [name for group in MENU.values() for name in group]
 
 
@@ -49,6 +56,10 @@ def examples() -> Iterator[Example]:
 PAGES_TO_DO = sorted(
     {one.page for one in examples() if one.kind in ("sh", "python")}, key=lambda page: (page != "scenes", page)
 )
+
+
+# Dear: the tests of their commands say nearly the same, and others here that all they name is there.
+DEAR = ("experiment", "transfer", "yielding")
 
 
 class Collected(HTMLParser):
@@ -175,8 +186,50 @@ def test_every_example_is_one() -> None:
     assert {example.kind for example in found} == {"sh", "python", "toml", "text"}
 
 
-@pytest.mark.family
 @pytest.mark.parametrize("page", PAGES_TO_DO)
+def test_every_line_names_what_there_is(page: str, empty: Path) -> None:
+    """Scenes, the keys set in them, settings, laws; of a scene that a line writes, those of the one it begins with."""
+    known = dict[str, str]()
+    for example in examples():
+        for _, *words in example.lines if (example.page, example.kind) == (page, "sh") else ():
+            args = parser().parse_args(words)
+            if args.command == "new":
+                assert main(words) == 0
+            if "scene" in args:
+                args.scene = known.get(args.scene, args.scene)
+                assert READERS.get(args.command, base.read_scene)(args)
+            if getattr(args, "laws", None) not in (None, "", "all"):
+                assert law_names(args.laws)
+            if args.command == "fit" and args.law != "all":
+                assert laws.get(args.law)
+            if args.command == "transfer":
+                for key, values in asked_of(args, Scene.load(args.scene)).over.items():
+                    each = {**vars(args), "overrides": [*args.overrides, f"{key}={values[0]}"]}
+                    assert base.read_scene(Namespace(**each))
+            if getattr(args, "write", None):
+                known[str(args.write)] = args.scene
+
+
+@pytest.mark.parametrize("page", PAGES_TO_DO)
+def test_every_call_is_one_of_what_there_is(page: str) -> None:
+    """The imports of an example are made; of each call of ours the name is there and takes these arguments."""
+    for example in examples():
+        if (example.page, example.kind) == (page, "python"):
+            tree, names = ast.parse(example.text), dict[str, object]()
+            imports = [one for one in tree.body if isinstance(one, ast.Import | ast.ImportFrom)]
+            exec(compile(ast.Module(imports, []), page, "exec"), names)
+            for call in ast.walk(tree):
+                if isinstance(call, ast.Call) and (name := ast.unparse(call.func)).partition(".")[0] in names:
+                    called = eval(name, names)
+                    if callable(called) and called.__module__.partition(".")[0] in ("fe_contact", "lumped"):
+                        given = {one.arg: one.value for one in call.keywords if one.arg}
+                        assert inspect.signature(called).bind(*call.args, **given)
+
+
+@pytest.mark.family
+@pytest.mark.parametrize(
+    "page", [pytest.param(page, marks=[pytest.mark.full] if page in DEAR else []) for page in PAGES_TO_DO]
+)
 def test_what_the_manual_tells_to_do_can_be_done(page: str, empty: Path) -> None:
     """Block after block, in an empty folder."""
     for example in examples():

@@ -128,9 +128,10 @@ def curve_of(found: list[dict[str, str]], name: str) -> tuple[list[float], list[
 
 @pytest.mark.tenth
 def test_a_changed_input_changes_what_depends_on_it(
-    written: tuple[Path, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    written: tuple[Path, str], tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     out = tmp_path / "out"
+    monkeypatch.setattr("fe_contact.studies.paper_chart.plot_paper", lambda *_: ())  # figures follow from the claims
     assert main(["paper", "--set", "steel.density=8000", "--json", "--out", str(out)]) == 0
     printed = json.loads(capsys.readouterr().out)
     assert printed == content(out)

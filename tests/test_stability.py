@@ -36,7 +36,7 @@ def default() -> dict[str, Any]:
 
 
 @pytest.mark.tenth
-@pytest.mark.parametrize("cfl", [1.0, 2.0])
+@pytest.mark.parametrize("cfl", [1.0, pytest.param(2.0, marks=pytest.mark.full)])
 def test_the_default_bounces_for_ten_periods(cfl: float) -> None:
     """A hundred elements: no energy, no beat and no ripple is lost, and the duration is known to a step."""
     kept = found(elements=100, periods=10, cfl=cfl)

@@ -102,7 +102,9 @@ def test_a_law_of_the_material_is_carried_over_temperatures_and_a_spring_is_not(
 
 
 @pytest.mark.family
-@pytest.mark.parametrize("law", ["kelvin", "hunt_crossley", "tsuji", "impact_bilinear"])
+@pytest.mark.parametrize(
+    "law", ["kelvin", "hunt_crossley", "tsuji", pytest.param("impact_bilinear", marks=pytest.mark.full)]
+)
 def test_restitution_and_peak_are_met_where_they_were_measured(law: str) -> None:
     """And the whole history is met no better than by least squares."""
     scene = Scene.load("polymer-sphere")
@@ -326,16 +328,11 @@ def test_the_axis_of_the_states_has_its_unit(key: str, said: str) -> None:
 
 
 @pytest.mark.tenth
-def test_the_chart_is_reproducible(tmp_path: Path) -> None:
+def test_the_chart_is_reproducible_and_says_where_its_axes_are_linear_and_what_its_shades_mean(tmp_path: Path) -> None:
     study = fe_contact.transfer(body("jankowski", k=1e7, xi=0.2), ("jankowski", "kelvin"), over={VELOCITY: (2.0,)})
     first, again = (plot_transfer(study, tmp_path / name) for name in ("first", "again"))
     assert [path.read_bytes() for path in first] == [path.read_bytes() for path in again]
-
-
-@pytest.mark.tenth
-def test_the_chart_says_where_its_axes_are_linear_and_what_its_shades_mean(tmp_path: Path) -> None:
-    study = fe_contact.transfer(body("jankowski", k=1e7, xi=0.2), ("jankowski", "kelvin"), over={VELOCITY: (2.0,)})
-    text = plot_transfer(study, tmp_path)[0].read_text(encoding="utf-8")
+    text = first[0].read_text(encoding="utf-8")
     assert text.count("(linear to 1)") == len(QUANTITIES)
     assert [text.count(f">{level} %<") for level in (10, 5, 1)] == [1, 1, 1]
 

@@ -167,7 +167,7 @@ def noisy_fits(law: str, count: int) -> tuple[Fit, ...]:
 
 
 @pytest.mark.tenth
-@pytest.mark.parametrize("law", ["kelvin", "hunt_crossley"])
+@pytest.mark.parametrize("law", [pytest.param("kelvin", marks=pytest.mark.full), "hunt_crossley"])
 def test_the_truth_lies_within_the_interval_as_often_as_said(law: str, campaign_size: Callable[..., int]) -> None:
     """With 1 % noise, 95 % of the intervals should hold it."""
     held = [
@@ -248,7 +248,9 @@ def test_a_damping_that_is_not_there_is_not_told_from_none() -> None:
 
 
 @pytest.mark.tenth
-@pytest.mark.parametrize(("law", "peak"), [("linear_spring", True), ("hertz", False)])
+@pytest.mark.parametrize(
+    ("law", "peak"), [pytest.param("linear_spring", True, marks=pytest.mark.full), ("hertz", False)]
+)
 def test_a_loop_is_fitted_to_what_has_none(law: str, peak: bool) -> None:
     """The slope after the yield can only come as near as the first: a step beyond it is no law."""
     found = fit(history(law, **TRUTHS[law]), "impact_bilinear", BODY, peak=peak)

@@ -91,8 +91,13 @@ AUDIT: dict[str, tuple[PoundingDamper, Start, tuple[float, ...]]] = {
 DIGITS = (0.01, 1e-3, 0.01, 0.01, 0.01, 0, 0.01, 0.1, 0.1, 0.1, 0.01, 0.01, 0.025)
 
 
+BETWEEN = {"both, .30", "both, .49", "structure, .30", "structure, .49"}  # .45 and .50 say nearly the same
+
+
 @pytest.mark.family
-@pytest.mark.parametrize("case", AUDIT)
+@pytest.mark.parametrize(
+    "case", [pytest.param(case, marks=[pytest.mark.full] if case in BETWEEN else []) for case in AUDIT]
+)
 def test_the_audited_table(case: str) -> None:
     system, start, expected = AUDIT[case]
     result = simulate(system, start)
@@ -494,7 +499,7 @@ def test_an_independent_integration_finds_the_same_motion(name: str) -> None:
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_every_energy_closes(name: str) -> None:
     system, start = SYSTEMS[name]
-    for end in (0.1, 1.2, 4.0):
+    for end in (0.1, 1.5):
         energy = simulate(system, start, end).energy
         assert abs(energy.residual) < 1e-12 * energy.initial
         assert min(energy.lost_structure, energy.lost_damper, energy.lost_ring) >= -1e-13 * energy.initial
