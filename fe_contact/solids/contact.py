@@ -125,7 +125,7 @@ class OnUndeformed:
 
 
 def _straight(depth: Array) -> Overlap:
-    """With a striker whose surface counts as flat where it is met."""
+    """The overlap, (facets, points), with a striker whose surface counts as flat where it is met."""
     none = np.zeros_like(depth)
     return Overlap(depth, np.stack([none, np.ones_like(depth)]), np.zeros((2, 2, *depth.shape)))
 
