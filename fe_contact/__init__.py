@@ -82,7 +82,7 @@ def indent(
     BadInput for depths and materials that cannot be, NotReached where contact does not settle.
     """
     from fe_contact.indentation import indent as press
-    from fe_contact.indentation import slowly
+    from fe_contact.indentation import indenter_of
     from fe_contact.methods import settings
     from lumped import Scene
     from lumped.scene.indenter import Indenter
@@ -90,7 +90,7 @@ def indent(
 
     table: Table = {}
     if isinstance(scene, Scene):
-        indenter = slowly(scene)
+        indenter = indenter_of(scene)
     else:
         indenter, table = load_indenter(Indenter, scene)
     return press(indenter, tuple(depths), settings(table, tolerance, indenter.source), instant)

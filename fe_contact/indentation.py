@@ -48,7 +48,7 @@ SCOUTING, SCOUTING_ORDER = 2.0, 2  # elements along the contact radius that tell
 LEAST_SHARE, LARGEST_SHARE = 0.4, 2.0  # contact radius over the one at which the undeformed surfaces overlap
 
 
-def slowly(scene: Scene) -> Indenter:
+def indenter_of(scene: Scene) -> Indenter:
     """The bodies of a scene, without their motion."""
     geometry = scene.geometry
     return Indenter(geometry.shape, geometry.material, geometry.target, geometry.striker_material, scene.model,

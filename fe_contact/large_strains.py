@@ -18,7 +18,7 @@ from fe_contact.budget import plan as statics
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import AIM
 from fe_contact.budget.solved import ImpactModel
-from fe_contact.indentation import COARSEST, indent, settings, slowly
+from fe_contact.indentation import COARSEST, indent, indenter_of, settings
 from fe_contact.progress import Progress, silent
 from fe_contact.settings import Given, check_kind, tolerance_of
 from fe_contact.solids.pressing import CORRECTED, Solid, check_large
@@ -97,7 +97,7 @@ def depth_reached(scene: Scene) -> float:
 
     The energy grows as a power of the depth, force x depth / energy.
     """
-    indenter, small = slowly(scene), statics.scales(scene, statics.plan(scene, {}).numerics)
+    indenter, small = indenter_of(scene), statics.scales(scene, statics.plan(scene, {}).numerics)
     if isinstance(indenter.shape, Block) and indenter.shape.uniform:
         return small.peak_depth
     numerics, radius = settings({"elements_per_contact": COARSEST}, indenter.shape, large=True), small.contact_radius
@@ -162,7 +162,7 @@ def _known(scene: Scene, deepest: float, given: Given, progress: Progress) -> Kn
     """The curve up to a depth, m. Raises NotReached."""
     place = 0.5 - 0.5 * np.cos(np.pi * np.arange(DEPTHS) / (DEPTHS - 1))
     depths = deepest * SHALLOWEST ** (1.0 - place)
-    pressed = indent(slowly(scene), tuple(depths.tolist()), given, progress=progress)
+    pressed = indent(indenter_of(scene), tuple(depths.tolist()), given, progress=progress)
     return KnownCurve(pressed, deepest, *_fitted(pressed, deepest, DEGREE))
 
 

@@ -98,15 +98,15 @@ def polar_stiffness(basis: Basis, law: Array, inner_radius: float) -> sparse.coo
 
 
 def volumes(basis: Basis, plane: bool = False) -> Array:
-    """Of the quadrature points, (elements, points): of a body of revolution, or per unit length of both halves of one
-    in plane strain.
+    """Of the quadrature points, (elements, points): of a body of revolution, m^3, or of both halves of one in plane
+    strain, per unit length, m^2.
     """
     areas = np.asarray(basis.dx)
     return 2.0 * areas if plane else 2.0 * np.pi * np.asarray(basis.global_coordinates())[0] * areas
 
 
 def stiffness(basis: Basis, law: Array, plane: bool = False) -> sparse.coo_matrix:
-    """Stiffness matrix of an axisymmetric body, shape (2 N, 2 N), N/m; or of one in plane strain, see :func:`volumes`.
+    """Stiffness matrix of an axisymmetric body, shape (2 N, 2 N), N/m; or of both halves of one in plane strain, N/m^2.
 
     Parameters
     ----------
@@ -118,7 +118,9 @@ def stiffness(basis: Basis, law: Array, plane: bool = False) -> sparse.coo_matri
 
 
 def mass(basis: Basis, plane: bool = False) -> Array:
-    """Consistent mass of every element of such a body of density one, (elements, 2 n, 2 n)."""
+    """Consistent mass of every element of an axisymmetric body of density one, (elements, 2 n, 2 n), m^3; or of both
+    halves of one in plane strain, m^2.
+    """
     weight = volumes(basis, plane)
     value = values(basis, weight.shape)
     scalar = np.einsum("eqi,eqj,eq->eij", value, value, weight, optimize=True)

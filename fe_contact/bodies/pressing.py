@@ -362,7 +362,7 @@ def smallest_struck(shape: Shape) -> float:
 
 
 def struck_ends(shape: Shape, numerics: Numerics) -> tuple[float, float]:
-    """Radii, m, between which the contacts of an impact end, of the largest that a mesh is made for."""
+    """The smallest and the largest contact radius of an impact that a mesh is made for, m."""
     largest = numerics.contact_radius / MARGIN
     return smallest_struck(shape) * largest, largest
 

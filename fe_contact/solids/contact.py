@@ -96,7 +96,7 @@ class OnTop:
 
     def overlap(self, place: Array, displacement: Array, depth: float) -> Overlap:
         """See :class:`Obstacle`."""
-        return _straight(depth + place[1] + displacement[1])
+        return _flat_overlap(depth + place[1] + displacement[1])
 
     def along(self, place: Array) -> Array:
         """From the ring's top, left or right."""
@@ -117,15 +117,15 @@ class OnUndeformed:
     def overlap(self, place: Array, displacement: Array, depth: float) -> Overlap:
         """See :class:`Obstacle`."""
         rise = self.profile.height(self.unit * np.abs(place[0])) / self.unit
-        return _straight(depth + place[1] - rise + displacement[1])
+        return _flat_overlap(depth + place[1] - rise + displacement[1])
 
     def along(self, place: Array) -> Array:
         """From the axis."""
         return np.asarray(place[0])
 
 
-def _straight(depth: Array) -> Overlap:
-    """With a striker whose surface counts as flat where it is met."""
+def _flat_overlap(depth: Array) -> Overlap:
+    """The overlap, (facets, points), with a striker whose surface counts as flat where it is met."""
     none = np.zeros_like(depth)
     return Overlap(depth, np.stack([none, np.ones_like(depth)]), np.zeros((2, 2, *depth.shape)))
 

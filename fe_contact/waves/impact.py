@@ -87,10 +87,10 @@ def record(moving: Moving, found: Motion, scene: Scene) -> March:
     """The history from touch to separation as of any march; forces are what the striker's momentum says."""
     (_, last), separated = found.seen[-1], left(found.samples[-1])
     pressed = found.samples[:-1] if separated else found.samples
-    end, spread = (pressed[-1].time, 0.0)
-    if separated:  # the last is known to a step where too few of them tell
-        told = parting(found.time, found.force, scene.profile.exponent_of_force)
-        end, spread = told or (last, found.time[-1] - found.time[-2])
+    end, spread = pressed[-1].time, 0.0
+    if separated:  # where too few steps tell when, it is the last touch, known to a step
+        read = parting(found.time, found.force, scene.profile.exponent_of_force)
+        end, spread = read or (last, found.time[-1] - found.time[-2])
     time = np.append([s.time for s in pressed], end) if separated else np.array([s.time for s in pressed])
     depth, speed = np.array([(float(s.displacement[0]), float(s.velocity[0])) for s in found.samples]).T
     momentum = scene.reduced_mass * (scene.velocity - speed + scene.gravity * found.time)

@@ -1,4 +1,4 @@
-"""How well each number is known: intervals by profile likelihood, correlation, draws of the posterior.
+"""How well each number is known: intervals by profile likelihood, correlation, posterior; and what no curve could tell.
 
 All others, the touches too, are chosen anew at every value of a profile.
 

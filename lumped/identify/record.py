@@ -206,7 +206,7 @@ class Identified:
         """What is left of the curves, in words, with the test that says so."""
         test = f"(Ljung-Box, p = {self.whiteness.probability:.2g})"
         if not self.whiteness.lags:
-            return "the law explains the curves: too little is left of them to be judged"
+            return "nothing speaks against the law: too little is left of the curves, or too few rows, to be judged"
         if self.adequate:
             return f"what is left is noise {test}"
         if self.whiteness.of_the_law:

@@ -86,7 +86,7 @@ def ring_moved(examples: Examples) -> Values:
 
 def _ring_peak(examples: Examples) -> Peak:
     """Of the first contact with both masses displaced, which no rod touches wider than its radius."""
-    found = measures(examples.ptmd, examples.ring)
+    found = measures(examples.ptmd, "both", examples.ring)
     numbers = [measure(found, name).value for name in ("peak_force", "peak_depth", "first_contact_duration")]
     return Peak(numbers[0], numbers[1], 0.5 * examples.ring.rod_diameter, numbers[2])
 

@@ -84,10 +84,11 @@ def _first_fall(function: Callable[[float], float], last: float) -> float:
 
 
 @cache
-def measures(ptmd: Ptmd, lining: RingLining | None, start: str = "both", damped: bool = True) -> Measures:
-    """Of the pounding damper; without a `lining` of the damper alone, not `damped` of the structure alone.
+def measures(ptmd: Ptmd, start: str, lining: RingLining | None, damped: bool = True) -> Measures:
+    """What the pounding damper does to its structure.
 
-    `start`: "both" masses or the "structure" alone displaced. Raises BadInput, NotReached.
+    `start`: "both" masses or the "structure" alone displaced; `lining`: None, a damper that meets no ring; `damped`:
+    False, a structure without a damper. Raises BadInput, NotReached.
     """
     if start not in STARTS:
         raise BadInput(Fault("free vibration", "start", f"{start!r}; accepted: {', '.join(STARTS)}"))
@@ -121,17 +122,17 @@ def mass_in_dashpot(p: Ptmd) -> float:
 
 def pounding(e: Examples, name: str, start: str = "both") -> Value:
     """A measure with the pounding damper."""
-    return measure(measures(e.ptmd, e.ring, start), name)
+    return measure(measures(e.ptmd, start, e.ring), name)
 
 
 def plain(e: Examples, name: str) -> Value:
     """A measure with the damper and without its ring."""
-    return measure(measures(e.ptmd, None), name)
+    return measure(measures(e.ptmd, "both", None), name)
 
 
 def alone(e: Examples, name: str) -> Value:
     """A measure of the structure without a damper."""
-    return measure(measures(e.ptmd, None, "structure", damped=False), name)
+    return measure(measures(e.ptmd, "structure", None, damped=False), name)
 
 
 def decay(e: Examples, vibration: Callable[[Examples, str], Value]) -> list[Value]:

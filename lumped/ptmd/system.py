@@ -1,4 +1,8 @@
-"""The pounding tuned mass damper of section 5: structure, damper on it, viscoelastic ring around that; what it did."""
+"""The pounding tuned mass damper of section 5: a structure, a damper on it, and a viscoelastic ring that stops it.
+
+As data of a file, as masses in a row with the force of a side of the ring, and what its motion comes to: rows,
+contacts, energies, measures.
+"""
 
 from __future__ import annotations
 

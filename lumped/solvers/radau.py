@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from lumped.numbers import Array, Real
 
 STAGES = 8  # default: Radau points of a step
-SHORTEST, LONGEST, CAUTION = 0.1, 5.0, 0.8  # safety: least and most of the next step over this one, and the share
+# Safety: least and most of the next step over this one, and the share of what is allowed.
+SHORTEST, LONGEST, CAUTION = 0.1, 5.0, 0.8
 
 
 class Nodes(NamedTuple):

@@ -112,7 +112,7 @@ class RodPiece:
     slope: float = 0.0
 
     def __call__(self, s: Array | float) -> Array:
-        """It, shape of s."""
+        """Its value, shape of s."""
         s = np.asarray(s)
         return np.asarray(self.shift + self.slope * s + np.exp(-s) * self.factor(s))
 

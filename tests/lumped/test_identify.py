@@ -174,11 +174,25 @@ def test_a_curve_of_the_law_itself_leaves_nothing_to_be_judged() -> None:
     curve = Curve(history.time, history.force)
     found = identify({"curve": curve}, table, ["target.material.R1"])
     assert found.adequate
-    assert found.verdict == "the law explains the curves: too little is left of them to be judged"
+    assert found.verdict.startswith("nothing speaks against the law: too little is left of the curves")
     assert not [one for one in found.warnings if "not to be trusted" in one]
     assert found.parameters["target.material.R1"].value == pytest.approx(2.0, rel=1e-5)
     wave = 1e-5 * curve.force.max() * np.sin(40.0 * curve.time / curve.time[-1])
     assert not identify({"curve": replace(curve, force=curve.force + wave)}, table, ["target.material.R1"]).adequate
+
+
+def test_a_curve_of_few_rows_is_not_called_explained() -> None:
+    """Of six rows no test says anything, however far from them the law is."""
+    table = scene(STRIKERS[0], {"law": "sls", "E0": 1e6, "R1": 2.0, "R2": 0.02})
+    built = Scene.from_dict(table)
+    history = simulate(laws.ting.of(built), built, 1e-6).history
+    time = np.linspace(0.0, history.time[-1], 6)
+    force = history.force_at(time) * (1.0 + 0.3 * np.sin(9.0 * time / time[-1]))
+    found = identify({"curve": Curve(time, force)}, table, ["target.material.E0"])
+    (curve,) = found.curves
+    assert np.abs(curve.force - curve.fitted).max() > 0.05 * force.max()
+    assert "explain" not in found.verdict
+    assert "too few rows" in found.verdict
 
 
 def test_an_interval_is_that_of_the_whole_profile() -> None:

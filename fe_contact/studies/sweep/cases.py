@@ -185,6 +185,8 @@ def _flat(table: Given, path: str = "") -> dict[str, object]:
 
 
 class _Reader(TableReader):
+    """Walks the tables of a sweep file once and keeps every fault."""
+
     TABLES = ("axes", "zipped", "draws")
     held = 0  # values of ranges and draws
 

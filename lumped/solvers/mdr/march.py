@@ -104,13 +104,13 @@ def rebound(inward: Inward, end_time: float, doubted: bool = False) -> RowTrack:
     `doubted`: whether it may turn in a last step that `end_time` cuts.
     """
     if inward.end:
-        return ended(inward, inward.end)
+        return track_of(inward, inward.end)
     if inward.instants[-1].acceleration >= 0.0:
-        return ended(inward, End.SECOND_APPROACH)
+        return track_of(inward, End.SECOND_APPROACH)
     return retreat(inward, end_time, doubted)
 
 
-def ended(inward: Inward, end: End, outward: Sequence[Instant] = (), beyond: Sequence[Instant] = ()) -> RowTrack:
+def track_of(inward: Inward, end: End, outward: Sequence[Instant] = (), beyond: Sequence[Instant] = ()) -> RowTrack:
     """An approach and the rebound that was followed of it, as far as it was, with the energies then."""
     row, last = inward.row, (outward or inward.instants)[-1]
     held = row.springs.held(row.problem.modulus, last.depth, row.even)
@@ -239,12 +239,12 @@ def retreat(inward: Inward, end_time: float, doubted: bool) -> RowTrack:
             beyond = _beyond(row.copy(), now, paces)
             last = shrinking.attempt(end_time - now.time)
             if tried is None and (last.velocity > 0.0 or (doubted and shrinking.turns_before(end_time))):
-                return ended(inward, End.SECOND_APPROACH, track)
+                return track_of(inward, End.SECOND_APPROACH, track)
             cut = shrinking.step(last)
             row.take(cut)
-            return ended(inward, End.TIME, [*track, cut.now], beyond)
+            return track_of(inward, End.TIME, [*track, cut.now], beyond)
         track.append(_taken(row, shrinking, tried, paces))
-    return ended(inward, End.SEPARATED, track)
+    return track_of(inward, End.SEPARATED, track)
 
 
 def _taken(row: SpringsInRow, shrinking: Shrinking, tried: Attempt, paces: list[float]) -> Instant:

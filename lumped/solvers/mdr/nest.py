@@ -18,7 +18,7 @@ from lumped.numbers import Array, local
 from lumped.result.history import End
 from lumped.scene.geometry import stiffest_impact
 from lumped.scene.scene import Scene
-from lumped.solvers.mdr.march import Inward, RowTrack, approach, ended, rebound
+from lumped.solvers.mdr.march import Inward, RowTrack, approach, rebound, track_of
 from lumped.solvers.mdr.row import Instant, RowProblem
 
 # Work: marches until the turn falls on a step; safety: the secant's slope is no flatter.
@@ -232,7 +232,7 @@ class Nest:
         return approach(self.problem, end, Prescribed(times), 2 * len(times), at_rest=0.0)
 
     def _back(self, inward: Inward) -> RowTrack:
-        return ended(inward, End.SECOND_APPROACH) if self.turns else rebound(inward, self.end_time)
+        return track_of(inward, End.SECOND_APPROACH) if self.turns else rebound(inward, self.end_time)
 
     def level(self, parts: int, turn: float) -> Level:
         """March with every step cut into `parts`, again with a better time of the turn, s, until that is met.
