@@ -21,6 +21,10 @@ class HalfSpaceCurve(LoadCurve):
     of the indenter (Sneddon 1965, doi 10.1016/0020-7225(65)90019-4).
     """
 
+    @abstractmethod
+    def force(self, depth: ArrayLike) -> Real:
+        """F/E*, m^2."""
+
     def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
         """F/E*, m^2, and 2 a, m."""
         return self.force(depth), 2.0 * self.contact_radius(depth)

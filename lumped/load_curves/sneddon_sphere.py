@@ -34,6 +34,10 @@ class SneddonSphere(HalfSpaceCurve):
         """R, m."""
         return self.radius
 
+    def force(self, depth: ArrayLike) -> Real:
+        """F/E*, m^2."""
+        return self.force_and_slope(depth)[0]
+
     def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
         """F/E*, m^2, and 2 a, m."""
         ratio = self._ratio(depth)
