@@ -109,7 +109,7 @@ class BulkBody(Whole):
         """Elastic energy in all springs of both networks, J."""
         return memory.volume.stored(self.moduli.bulk) + memory.shear.stored(self.moduli.shear)
 
-    def spent(self, before: BulkMemory, after: BulkMemory, length: float) -> tuple[float, float]:
+    def heat_and_loss(self, before: BulkMemory, after: BulkMemory, length: float) -> tuple[float, float]:
         """Heat of a step in both networks, J, and of the work on them what the scheme leaves unaccounted for, J."""
         pairs = list(zip(before, after, self.moduli, strict=True))
         heat = sum(early.dissipated(late, modulus, length) for early, late, modulus in pairs)

@@ -174,7 +174,7 @@ class OneNetwork:
         """Elastic energy in all springs, J."""
         return memory.stored(self.relaxation)
 
-    def spent(self, before: SurfaceMemory, after: SurfaceMemory, length: float) -> tuple[float, float]:
+    def heat_and_loss(self, before: SurfaceMemory, after: SurfaceMemory, length: float) -> tuple[float, float]:
         """Heat of a step, J, and of the work in it what the scheme leaves unaccounted for, J."""
         lost = before.lost(after, self.relaxation, self.scheme, length)
         return before.dissipated(after, self.relaxation, length), lost

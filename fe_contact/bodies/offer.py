@@ -35,7 +35,7 @@ class Remembering(Protocol):
     def stored(self, memory: Memory) -> float:
         """Elastic energy in all springs, J."""
 
-    def spent(self, before: Memory, after: Memory, length: float) -> tuple[float, float]:
+    def heat_and_loss(self, before: Memory, after: Memory, length: float) -> tuple[float, float]:
         """Heat of a step, J, and of the work in it what the scheme leaves unaccounted for, J."""
 
 

@@ -71,7 +71,7 @@ class Spent(NamedTuple):
     @classmethod
     def of(cls, stepper: Stepping, before: State, step: Step) -> Spent:
         """Of a step from a state that still has its memory."""
-        heat, lost = stepper.spent(before.memory, step.state.memory, step.length)
+        heat, lost = stepper.heat_and_loss(before.memory, step.state.memory, step.length)
         return cls(heat, lost, stepper.between(before, step))
 
 

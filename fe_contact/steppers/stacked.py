@@ -226,10 +226,10 @@ class StackedBody:
         """Elastic energy in all springs, J."""
         return sum(half.stored(own) for half, own in zip(self.halves, memory, strict=True))
 
-    def spent(self, before: Memory, after: Memory, length: float) -> tuple[float, float]:
+    def heat_and_loss(self, before: Memory, after: Memory, length: float) -> tuple[float, float]:
         """Heat of a step, J, and of the work in it what the scheme leaves unaccounted for, J."""
         steps = zip(self.halves, before, after, strict=True)
-        heats, losses = zip(*(half.spent(first, then, length) for half, first, then in steps), strict=True)
+        heats, losses = zip(*(half.heat_and_loss(first, then, length) for half, first, then in steps), strict=True)
         return sum(heats), sum(losses)
 
     def _pressed(self, found: Sequence[Offer], now: float) -> PressedSurface:

@@ -189,7 +189,7 @@ class Stepping(Protocol):
     def stored(self, memory: Memory) -> float:
         """Elastic energy, J."""
 
-    def spent(self, before: Memory, after: Memory, length: float) -> tuple[float, float]:
+    def heat_and_loss(self, before: Memory, after: Memory, length: float) -> tuple[float, float]:
         """Heat of a step of a length, s; of the work on the body in it what a scheme leaves unaccounted for; J."""
 
     def between(self, before: State, step: Step) -> float:

@@ -230,9 +230,9 @@ class FixedStepper:
         """Elastic energy, J."""
         return self.body.stored(memory.body)
 
-    def spent(self, before: Memory, after: Memory, length: float) -> tuple[float, float]:
+    def heat_and_loss(self, before: Memory, after: Memory, length: float) -> tuple[float, float]:
         """Heat of a step of a length, s; of the work in it what the scheme leaves unaccounted for; J."""
-        return self.body.spent(before.body, after.body, length)
+        return self.body.heat_and_loss(before.body, after.body, length)
 
     def between(self, before: State, step: Step) -> float:
         """Work of the striker in a step that does not reach the body, J: of the penalty, and at a gap that opens."""

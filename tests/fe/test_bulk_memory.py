@@ -234,7 +234,7 @@ def test_work_is_stored_or_heat_or_lost_by_the_scheme(name: str, scheme: MemoryS
     _, work, memories = ramped(body, 7, 0.5, np.where(points < np.median(points), 1.0, 0.0))
     lengths = 0.5 * np.diff((np.arange(8) / 7) ** 1.5)
     steps = list(zip(pairwise(memories), lengths, strict=True))
-    heat, lost = np.sum([body.spent(*pair, dt) for pair, dt in steps], axis=0)
+    heat, lost = np.sum([body.heat_and_loss(*pair, dt) for pair, dt in steps], axis=0)
     assert body.stored(memories[-1]) > 0.0
     assert heat > 0.1 * work
     assert (lost > 1e-3 * work) == (scheme is backward_euler)
