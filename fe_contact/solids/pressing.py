@@ -172,7 +172,7 @@ def press(
     Raises NotReached.
     """
     if isinstance(indenter.shape, Block) and indenter.shape.uniform:
-        return _alike(indenter, indenter.shape, depth)
+        return _pressed_evenly(indenter, indenter.shape, depth)
     found, again, widening = dict[int, Reached](), dict[int, Reached](), _widening(depth, radii)
     for together in _together(indenter.profile, depth):
         solid, reached = Solid.of(indenter, radii[together], numerics), None
@@ -187,7 +187,7 @@ def press(
     return told if softer is None else replace(told, softer=_told(solid, again))
 
 
-def _alike(indenter: Indenter, block: Block, depth: Array) -> PressedDepths:
+def _pressed_evenly(indenter: Indenter, block: Block, depth: Array) -> PressedDepths:
     """Every depth, m, on a ``block`` strained alike everywhere: what one point answers is what the block answers,
     whatever the mesh. Raises EquilibriumLost.
     """

@@ -238,7 +238,7 @@ def assemble(
     # The rows themselves add what linear interpolation errs by, less than the tolerance; the bar is for the
     # rows.
     history = History(times, depth, velocity, force, radius, np.full(times.size, force_error))
-    resolved = model or small(scene.model)
+    resolved = model or small_model(scene.model)
     missed = unmet(quantities, tolerance)
     peak = quantities["peak_force"].value or 1.0
     return Result(
@@ -264,7 +264,7 @@ def assemble(
 
 
 @lru_cache(maxsize=16)  # of many impacts it is the same
-def small(model: Model) -> Model:
+def small_model(model: Model) -> Model:
     """The model with small displacements, without inertia and without plastic flow."""
     return replace(model, inertia=False, kinematics="small", plasticity=False)
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from lumped import laws
 from lumped.errors import BadInput, Fault
-from lumped.laws._assembly import Answer, assemble, bars, impulse_of, small, values_of_several
+from lumped.laws._assembly import Answer, assemble, bars, impulse_of, small_model, values_of_several
 from lumped.load_curves.base import LoadCurve
 from lumped.numbers import Array, Clock
 from lumped.result.history import End
@@ -105,7 +105,7 @@ class ForceLaw(PointLaw):
 
     def resolved(self, scene: Scene) -> Model:
         """The scene's model as this law has it: its stiffness stands for a parabola, and no body for waves."""
-        return replace(small(scene.model), profile="parabola") if scene.has_geometry else scene.model
+        return replace(small_model(scene.model), profile="parabola") if scene.has_geometry else scene.model
 
 
 def between_masses(name: str, scene: Scene) -> ForceLaw:

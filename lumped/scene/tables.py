@@ -298,9 +298,9 @@ class SceneReader(TableReader):
         numerics = self.table("numerics", required=False)
         if alone or bodies["target"] is not None:
             self.inertia(model, bodies.get("target"))
-        self.faults += self.unfit(bodies)
+        self.faults += self.striker_faults(bodies)
         if self.faults:
-            raise BadInput([*self.faults, *self.at_odds(bodies, model)])
+            raise BadInput([*self.faults, *self.faults_together(bodies, model)])
         built = kind(**bodies, law=law, model=model, motion=motion, name=name, source=self.source)
         if law is not None and law_known:
             built.check_law()
@@ -312,13 +312,13 @@ class SceneReader(TableReader):
         bodies = self.bodies(optional(STRIKER_KEYS))
         model = self.record(Model)
         numerics = self.table("numerics", required=False)
-        self.faults += self.unfit(bodies)
+        self.faults += self.striker_faults(bodies)
         if self.faults:
             raise BadInput(self.faults)
         own = {key: bodies[key] for key in ("shape", "material", "target", "striker_material")}
         return kind(**own, model=model, name=name, source=self.source), numerics
 
-    def unfit(self, bodies: Table) -> Sequence[Fault]:
+    def striker_faults(self, bodies: Table) -> Sequence[Fault]:
         """What is wrong with a striker that the target is not for, where both are known."""
         shape, target = bodies["shape"], bodies.get("target")
         if shape is None or target is None:
@@ -329,7 +329,7 @@ class SceneReader(TableReader):
             return bad.faults
         return ()
 
-    def at_odds(self, bodies: Table, model: Model) -> list[Fault]:
+    def faults_together(self, bodies: Table, model: Model) -> list[Fault]:
         """Values that are accepted each alone and not together, which a scene that is made finds by itself."""
         shape, mass = bodies["shape"], bodies.get("mass")
         may_swing = model.inertia and (shape is None or shape.own_mass(1.0) > 0.0)
