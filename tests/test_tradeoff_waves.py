@@ -91,7 +91,7 @@ def test_a_bouncing_bar_claims_its_history_whole() -> None:
     """Between its contacts the steps err by a time, so that the force errs by the root of it: also where it ends."""
     scene = Scene.load("bar")
     exact = simulate(scene, "bar_waves", {"tolerance": 1e-6}).history
-    for steps in (100, 200, 400):
+    for steps in (100, 200, 800):
         found = simulate(scene, "fe", {"tolerance": 0.1, "steps": steps})
         rows = np.union1d(exact.time, found.history.time)
         apart = distance(straight(exact), straight(found.history), rows)
