@@ -151,8 +151,9 @@ WRONG = {
 @pytest.mark.parametrize("law", WRONG)
 def test_a_wrong_law_is_called_wrong(law: str, request: pytest.FixtureRequest) -> None:
     """Wherever the law's own error exceeds the noise twice."""
-    rng, cases = np.random.default_rng(SEED), 40 if request.config.getoption("--full") else 2
-    every, called = truths(rng, "sls", most=0.01), list[bool]()
+    cases, most = (40, 0.05) if request.config.getoption("--full") else (2, 0.006)  # little noise is soon exceeded
+    rng, called = np.random.default_rng(SEED), list[bool]()
+    every = truths(rng, "sls", most)
     own, names = WRONG[law]
     while len(called) < cases:
         truth = next(every)

@@ -167,11 +167,11 @@ WALL = PoundingFrames(
 )
 CASES = [
     (TWO, "kelvin", {}),
-    (TWO, "hertz", {}),
+    pytest.param(TWO, "hertz", {}, marks=pytest.mark.full),
     (THREE, "jankowski", {}),
     (THREE, "kelvin", {"exit": "depth"}),
     (WALL, "hertzdamp", {}),
-    (WALL, "linear_spring", {}),
+    pytest.param(WALL, "linear_spring", {}, marks=pytest.mark.full),
 ]
 
 
