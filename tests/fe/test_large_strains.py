@@ -36,7 +36,7 @@ from fe_contact.solids.newton import (
     _descending,
     balanced,
 )
-from fe_contact.solids.pressing import Reached, Solid, _alike, _core, _together, advanced, press
+from fe_contact.solids.pressing import Reached, Solid, _core, _pressed_evenly, _together, advanced, press
 from lumped import BadInput, Scene, laws
 from lumped.errors import NotReached
 from lumped.indentation import Indentation
@@ -220,7 +220,7 @@ def test_a_block_pressed_by_little_is_a_spring(sides: str) -> None:
     depth = np.array([1e-4, 2e-4]) * 0.5
     for nu in (0.1, 0.45):
         indenter = Indenter(block, Material(Relaxation(1.0), nu, hyperelastic="neo_hooke"), Plane())
-        change = _alike(indenter, block, depth).force / (4.0 * depth / 0.5) - 1.0
+        change = _pressed_evenly(indenter, block, depth).force / (4.0 * depth / 0.5) - 1.0
         assert abs(2.0 * change[0] - change[1]) < 1e-6
 
 
@@ -245,14 +245,14 @@ def test_a_block_pressed_deep_presses_by_the_slope_of_its_least_energy(name: str
         )
         return float(found.fun), float(found.x)
 
-    found = _alike(Indenter(block, material, Plane()), block, depth)
+    found = _pressed_evenly(Indenter(block, material, Plane()), block, depth)
     modulus = 3.0 if sides == "free" else lame + 2.0 * shear
     for deep, force, radius in zip(depth, found.force, found.contact_radius, strict=True):
         along = 1.0 - deep / 0.5
         slope = (least(along + small)[0] - least(along - small)[0]) / (2.0 * small)
         assert force * modulus == pytest.approx(-4.0 * slope, rel=1e-6)
         assert radius == pytest.approx(math.sqrt(4.0 / math.pi) * least(along)[1], rel=1e-6)
-    beside = _alike(Indenter(block, material, Plane()), block, np.array([1e-9, 0.2]))
+    beside = _pressed_evenly(Indenter(block, material, Plane()), block, np.array([1e-9, 0.2]))
     assert beside.force[1] == pytest.approx(found.force[2], rel=1e-12), "whatever depths are pressed beside it"
 
 
@@ -261,10 +261,10 @@ def test_a_block_that_softens_is_pressed_to_where_its_waves_end_and_the_least_de
     block, material = Prism(1.0, 2.0, "confined"), Material(Relaxation(1.0), 0.0, hyperelastic="st_venant_kirchhoff")
     indenter, last = Indenter(block, material, Plane()), 2.0 * (1.0 - 1.0 / np.sqrt(3.0))
     stretch = 1.0 - 0.94 * last / 2.0
-    found = _alike(indenter, block, np.array([0.94 * last]))
+    found = _pressed_evenly(indenter, block, np.array([0.94 * last]))
     assert found.force == pytest.approx([0.5 * (stretch - stretch**3)], rel=1e-9)
     with pytest.raises(BeyondRange) as ended:
-        _alike(indenter, block, np.array([1.2, 0.5, 1.01, 1.1]) * last)
+        _pressed_evenly(indenter, block, np.array([1.2, 0.5, 1.01, 1.1]) * last)
     assert ended.value.depth == pytest.approx(1.01 * last)
 
 

@@ -54,7 +54,7 @@ class Spring:
     def stored(self, memory: Any) -> float:
         return float(0.5 * STIFFNESS * memory**2)
 
-    def spent(self, before: Any, after: Any, length: float) -> tuple[float, float]:
+    def heat_and_loss(self, before: Any, after: Any, length: float) -> tuple[float, float]:
         return 0.0, 0.0
 
     def between(self, before: State, step: Step) -> float:
