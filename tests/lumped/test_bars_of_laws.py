@@ -18,7 +18,7 @@ from scipy.special import beta
 from lumped import Material, Model, Motion, Quantity, Relaxation, Scene, Sphere, laws, simulate
 from lumped.indentation import FiniteSize, indent, power_law
 from lumped.laws import _force_law, _hereditary
-from lumped.laws._assembly import AROUND, BENDS, Answer, _NearPeak, bars, impulse_of, values_of
+from lumped.laws._assembly import AROUND, BENDS, Answer, _largest_and_norm, _NearPeak, bars, impulse_of, values_of
 from lumped.numbers import Array
 from lumped.result.history import AT_REST, End
 from lumped.result.result import UNITS, meets
@@ -561,3 +561,9 @@ def test_how_a_force_bends_is_told_whatever_its_slope_there(rate: float) -> None
     """Of a parabola exactly: of that through 1 + rate t - 2 t^2 over the width that is looked at."""
     assert BENDS @ (1.0 + rate * AROUND - 2.0 * AROUND**2) == pytest.approx(-2.0, rel=1e-12)
     assert AROUND[[0, -1]].tolist() == [0.0, 1.0], "all of it"
+
+
+def test_two_forces_that_are_none_differ_by_nothing() -> None:
+    """Of a striker that its end time stops before anything presses."""
+    nothing = np.zeros(4)
+    assert _largest_and_norm(np.arange(4.0), nothing, nothing) == (0.0, 0.0)

@@ -22,6 +22,7 @@ from lumped.result.result import Result
 from lumped.solvers.hereditary.march import HereditaryMarch, Settings, Stretch, tail
 from lumped.solvers.hereditary.path import ByField, Path, chebyshev
 from lumped.solvers.hereditary.pieces import (
+    FORCE,
     Followed,
     HereditaryPiece,
     PieceAsked,
@@ -239,6 +240,18 @@ def test_a_largest_force_so_far_is_what_errors_are_shares_of() -> None:
     alone_, after = (marched(force, (0.0, 9.0), 0.1, largest=known) for known in (0.0, 1e3))
     assert len(after.path.coefficients) < len(alone_.path.coefficients)
     assert (alone_.largest, after.largest) == (1.0, 1e3)
+
+
+def test_one_more_of_newton_s_steps_would_change_a_solved_piece_by_rounding() -> None:
+    """From guesses that are nothing, near and far."""
+    problem, table = problem_of(Scene.load(SPHERE)), radau(12)
+    asked = PieceAsked(problem, table, over_root, 0.0, 0.4, problem.early(np.zeros(1))[:, 0])
+    pieces = Pieces.of([asked])
+    for guess in (0.0, 0.3, 5.0):
+        (found,) = pieces.solved(np.full((1, 12), guess))
+        assert found is not None
+        a = problem.gravity - found.values[FORCE, 1:]
+        assert np.abs(pieces.iterate(a[None]).change).max() < 1e-12 * np.abs(a).max()
 
 
 def test_pieces_solved_together_are_those_solved_alone_to_the_bit() -> None:
