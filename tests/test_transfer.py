@@ -294,6 +294,11 @@ def test_bad_options_write_nothing(options: list[str], message: str, refused: Ca
     assert message in fault
 
 
+def test_bad_options_are_told_together(refused: Callable[..., list[str]]) -> None:
+    said = refused("transfer", "polymer-sphere", "--calibrate", "peak", "--within", "2")
+    assert [line.partition(":")[0] for line in said] == ["--calibrate", "--within"]
+
+
 def test_no_two_laws_share_a_colour() -> None:
     """One that nobody gave a colour is black."""
     named = [style.LAWS[name] for name in laws.available() if name in style.LAWS]

@@ -55,11 +55,15 @@ def identify(
 
     if not curves:
         raise BadInput(Fault("curves", "", "none; accepted: at least one measured history"))
-    for name, frequency in (("corner", corner), ("low_pass", low_pass)):
-        if frequency is not None and not 0.0 < frequency < HIGHEST:
-            raise BadInput(Fault(name, "", f"{frequency:g}: accepted a frequency above zero, Hz"))
+    faults = [
+        Fault(name, "", f"{frequency:g}: accepted a frequency above zero, Hz")
+        for name, frequency in (("corner", corner), ("low_pass", low_pass))
+        if frequency is not None and not 0.0 < frequency < HIGHEST
+    ]
     if corner is not None and low_pass is not None:
-        raise BadInput(Fault("low_pass", "", "beside a corner; accepted: one of them"))
+        faults.append(Fault("low_pass", "", "beside a corner; accepted: one of them"))
+    if faults:
+        raise BadInput(faults)
     free = [name for name in free if name != TOUCH]
     file, theirs = SceneFile.of(scene, overrides or {}).named_by(free), own or {}
 

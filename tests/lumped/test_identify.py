@@ -515,6 +515,9 @@ def test_a_low_pass_beside_a_corner_and_of_uneven_rows_is_refused() -> None:
                 identify({"curve": curve}, "polymer-sphere", ["E1"], **{name: wrong})
     with pytest.raises(BadInput, match="beside a corner; accepted: one of them"):
         identify({"curve": curve}, "polymer-sphere", ["E1"], corner=1e3, low_pass=1e3)
+    with pytest.raises(BadInput) as refused:
+        identify({"curve": curve}, "polymer-sphere", ["E1"], corner=-1.0, low_pass=np.nan)
+    assert [fault.source for fault in refused.value.faults] == ["corner", "low_pass", "low_pass"]
     rows = np.linspace(0.0, 1.0, 50) ** 1.3
     with pytest.raises(BadInput, match="not known of rows in uneven steps"):
         identify({"curve": Curve(rows, np.sin(np.pi * rows))}, "polymer-sphere", ["E1"], low_pass=1e3)

@@ -57,11 +57,13 @@ class Asked:
     def __post_init__(self) -> None:
         for name in self.laws:
             laws.get(name)
+        faults = list[Fault]()
         if self.calibrate not in CALIBRATIONS:
-            reason = f"{shown(self.calibrate)}: accepted {', '.join(CALIBRATIONS)}"
-            raise BadInput(Fault("--calibrate", "", reason))
+            faults.append(Fault("--calibrate", "", f"{shown(self.calibrate)}: accepted {', '.join(CALIBRATIONS)}"))
         if not TOLERATED.low <= self.within <= TOLERATED.high:
-            raise BadInput(Fault("--within", "", f"{self.within:g}: accepted {TOLERATED.accepted}"))
+            faults.append(Fault("--within", "", f"{self.within:g}: accepted {TOLERATED.accepted}"))
+        if faults:
+            raise BadInput(faults)
 
 
 @dataclass(frozen=True, eq=False)
