@@ -17,8 +17,9 @@ from lumped.result.history import End
 from lumped.result.result import Result, meets
 from lumped.scene.geometry import stiffest_impact
 from lumped.scene.scene import Scene
+from lumped.solvers.hereditary.approach import Approach
 from lumped.solvers.hereditary.closing import Closing
-from lumped.solvers.hereditary.march import Approach, Settings
+from lumped.solvers.hereditary.march import Settings
 from lumped.solvers.hereditary.path import HereditaryPhase
 from lumped.solvers.hereditary.pieces import Followed, alone
 from lumped.solvers.hereditary.problem import Hereditary

@@ -29,8 +29,9 @@ from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
 from lumped.schema.keys import Choice, Key, keys_of
+from lumped.solvers.hereditary.approach import approach
 from lumped.solvers.hereditary.closing import Closing, close
-from lumped.solvers.hereditary.march import Settings, approach
+from lumped.solvers.hereditary.march import Settings
 from lumped.solvers.hereditary.path import HereditaryPhase, Path, SinceTouch, UntilEnd
 from lumped.solvers.hereditary.pieces import DEPTH, Followed
 from lumped.solvers.hereditary.problem import Hereditary

@@ -23,7 +23,8 @@ from lumped.result.history import End
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.solvers.hereditary import rebound as back
-from lumped.solvers.hereditary.march import Settings, approach
+from lumped.solvers.hereditary.approach import approach
+from lumped.solvers.hereditary.march import Settings
 from lumped.solvers.hereditary.path import ByField, HereditaryPhase, SinceTouch
 from lumped.solvers.hereditary.pieces import DEPTH, Followed
 from lumped.solvers.hereditary.problem import Hereditary

@@ -26,8 +26,9 @@ from lumped.scene.tables import Motion
 from lumped.shapes.cone import Cone
 from lumped.shapes.power import PowerProfile
 from lumped.shapes.sphere import Sphere
+from lumped.solvers.hereditary.approach import approach
 from lumped.solvers.hereditary.closing import close
-from lumped.solvers.hereditary.march import Settings, approach
+from lumped.solvers.hereditary.march import Settings
 from lumped.solvers.hereditary.pieces import DEPTH, FORCE, alone
 from lumped.solvers.mdr import march
 from lumped.solvers.mdr.nest import (

@@ -14,7 +14,8 @@ import numpy as np
 
 from lumped.errors import BadInput, NotReached, TooManySteps
 from lumped.numbers import Array
-from lumped.solvers.hereditary.march import SHORTEST, Approach, Settings, follow, tail
+from lumped.solvers.hereditary.approach import Approach, follow
+from lumped.solvers.hereditary.march import SHORTEST, Settings, tail
 from lumped.solvers.hereditary.path import Path
 from lumped.solvers.hereditary.pieces import DEPTH, FORCE, VELOCITY, Followed, PieceAsked, to_end
 from lumped.solvers.hereditary.problem import Hereditary

@@ -30,7 +30,8 @@ from lumped.errors import NotReached
 from lumped.numbers import Array, falling_zero, gauss
 from lumped.result.history import End
 from lumped.solvers.hereditary import pieces as forth
-from lumped.solvers.hereditary.march import Approach, Settings, Stretch
+from lumped.solvers.hereditary.approach import Approach
+from lumped.solvers.hereditary.march import Settings, Stretch
 from lumped.solvers.hereditary.path import Path
 from lumped.solvers.hereditary.pieces import Followed, HereditaryPiece
 from lumped.solvers.hereditary.problem import Hereditary
