@@ -16,8 +16,8 @@ from lumped.errors import BadInput, Fault, nearest
 from lumped.materials import Material
 from lumped.materials.networks import NETWORKS
 from lumped.pounding import case_file as pounding
-from lumped.pounding.case_file import GapLaw
 from lumped.pounding.frames import Gap, ShearFrame, Slab
+from lumped.pounding.gap_laws import GapLaw
 from lumped.ptmd import case_file as damper
 from lumped.ptmd.free_vibration import TIME_KEYS
 from lumped.ptmd.system import Oscillator

@@ -19,7 +19,8 @@ from lumped import simulate as simulate_impact
 from lumped.errors import BadInput, NotReached
 from lumped.laws._force_law import ForceLaw, between_masses
 from lumped.pounding import STILL, Gap, GroundRecord, PoundingFrames, ShearFrame, Sine, march, simulate
-from lumped.pounding.case_file import force_of, load
+from lumped.pounding.case_file import load
+from lumped.pounding.gap_laws import force_of
 from lumped.pounding.ground import GroundMotion
 from lumped.scene.tables import LawChoice
 

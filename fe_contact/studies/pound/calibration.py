@@ -16,7 +16,8 @@ from fe_contact.studies.transfer.verdict import QUANTITIES
 from lumped.errors import BadInput, Fault, shown
 from lumped.fit.space import own_keys
 from lumped.laws._force_law import ForceLaw
-from lumped.pounding.case_file import PoundingCase, force_of
+from lumped.pounding.case_file import PoundingCase
+from lumped.pounding.gap_laws import force_of
 from lumped.pounding.study import PoundStudy, pounding, study
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
