@@ -6,8 +6,8 @@ from pathlib import Path
 
 from fe_contact.studies.files import Line, lines_of, write_study
 from lumped.ptmd.case_file import Case
+from lumped.ptmd.result import COLUMNS
 from lumped.ptmd.study import SMALL, PtmdStudy
-from lumped.ptmd.system import COLUMNS
 from lumped.result.folder import publish
 from lumped.result.result import provenance, worst
 from lumped.schema import Table

@@ -21,18 +21,8 @@ from lumped.pounding.ground import STILL
 from lumped.pounding.march import FrameMarch, FramesFlight, OnTime, ignore, rows
 from lumped.pounding.simulation import Peaks
 from lumped.pounding.trial import FramesAt, Rules
-from lumped.ptmd.system import (
-    SIDES,
-    Energy,
-    Measures,
-    PoundingDamper,
-    PtmdContact,
-    PtmdMotion,
-    PtmdResult,
-    Start,
-    bodies_of,
-    law_of,
-)
+from lumped.ptmd.result import Energy, Measures, PtmdContact, PtmdMotion, PtmdResult
+from lumped.ptmd.system import SIDES, PoundingDamper, Start, bodies_of, law_of
 from lumped.schema.keys import Key, Number, read_table
 from lumped.solvers.point.bodies import TINY, State
 from lumped.solvers.point.memory import StepLoad

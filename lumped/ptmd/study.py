@@ -8,7 +8,8 @@ from lumped.errors import addressed
 from lumped.progress import Progress, silent
 from lumped.ptmd.case_file import Case
 from lumped.ptmd.free_vibration import STEP_TOLERANCE, simulate
-from lumped.ptmd.system import PoundingDamper, PtmdResult
+from lumped.ptmd.result import PtmdResult
+from lumped.ptmd.system import PoundingDamper
 from lumped.result.result import LedgerEntry, sufficient
 
 FINER = 1e-2 * STEP_TOLERANCE  # of the second run that tells errors
