@@ -18,8 +18,8 @@ from lumped.pounding import march
 from lumped.ptmd import Memory
 from lumped.ptmd import study as studies
 from lumped.ptmd.case_file import CASES, load, read
-from lumped.ptmd.study import BARE, FULL, PLAIN, study
 from lumped.ptmd.result import COLUMNS
+from lumped.ptmd.study import BARE, FULL, PLAIN, study
 from lumped.schema.csv_file import read_columns
 
 SHORT = ["--set", "motion.end_time=1.0", "--quiet"]

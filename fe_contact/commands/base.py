@@ -26,9 +26,9 @@ from lumped.result.folder import publish as publish_files
 from lumped.result.result import Result, worst
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
-from lumped.scene.tables import Model, SceneReader
+from lumped.scene.tables import Model, SceneReader, reader_of
 from lumped.schema import Table
-from lumped.schema.files import SCENES, overridden, parse_assignment, parsed
+from lumped.schema.files import SCENES, parse_assignment
 
 if TYPE_CHECKING:
     from fe_contact.studies.finite_exponents import StrainedRow
@@ -155,13 +155,12 @@ def pairs(texts: Iterable[str], option: str, accepted: str) -> Iterator[tuple[st
 
 
 def _read(args: argparse.Namespace, make: Callable[[SceneReader], tuple[Read, Table]]) -> tuple[Read, Table]:
-    overrides, path = overrides_of(args), SCENES.resolved(args.scene)
-    tables = overridden(parsed(path), overrides, path.name)
+    reader = reader_of(args.scene, overrides_of(args))
     try:
-        scene, table = make(SceneReader(path.name, tables, path.parent))
+        scene, table = make(reader)
     except BadInput as bad:
-        settings = tables.get("numerics", {})
-        refused = faults(settings, path.name) if isinstance(settings, dict) else []
+        settings = reader.raw.get("numerics", {})
+        refused = faults(settings, reader.source) if isinstance(settings, dict) else []
         raise BadInput([*bad.faults, *refused]) from None
     tolerance = getattr(args, "tolerance", None)
     fixed = any(text.split("=")[0].strip() == "numerics.tolerance" for text in args.overrides)

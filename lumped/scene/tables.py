@@ -159,14 +159,14 @@ def load(
     `overrides` maps dotted keys ("striker.velocity") to values that replace the file's. Where the law is yet to be
     found, not `law_known`, mass and velocity are enough. Raises BadInput with every fault found, at most 20.
     """
-    return _reader(source, overrides).scene(kind, law_known)
+    return reader_of(source, overrides).scene(kind, law_known)
 
 
 def load_indenter(
     kind: Callable[..., Pressed], source: str | Path, overrides: Mapping[str, object] | None = None
 ) -> tuple[Pressed, Table]:
     """What a slow indentation needs of a file, and its raw `[numerics]`. Raises BadInput with every fault."""
-    return _reader(source, overrides).indenter(kind)
+    return reader_of(source, overrides).indenter(kind)
 
 
 def read(
@@ -179,7 +179,7 @@ def read(
     return SceneReader(source, overridden(table, overrides or {}, source)).scene(kind)
 
 
-def _reader(source: str | Path, overrides: Mapping[str, object] | None) -> SceneReader:
+def reader_of(source: str | Path, overrides: Mapping[str, object] | None) -> SceneReader:
     """What reads the file of a path or a packaged name. Raises BadInput."""
     path = SCENES.resolved(source)
     return SceneReader(path.name, overridden(parsed(path), overrides or {}, path.name), path.parent)
