@@ -314,6 +314,24 @@ def test_two_bodies_together_sink_in_by_what_each_does() -> None:
     np.testing.assert_allclose(body.displacement(found), alone.displaced(operator.weights * pressure), rtol=1e-9)
 
 
+@pytest.mark.parametrize(("length", "instant"), [(1e-7, True), (1.0, False)])
+def test_a_body_of_constant_bulk_modulus_meets_a_step_with_the_stiffness_of_its_length(
+    length: float, instant: bool
+) -> None:
+    """Far shorter or longer than it relaxes: that of an elastic body of the moduli at that end, of another nu each."""
+    soft = Material(Relaxation(YOUNG, (YOUNG,), (1e-3,)), 0.3, constant="bulk")
+    compliances = []
+    for material in (soft, soft.elastic(instant=instant)):
+        scene = Scene(Roller(0.01, 0.02), 0.02, 0.05, material, target=CylinderTarget(0.015, "held"))
+        numerics = replace(plan(scene, {"elements_per_contact": 2.0}).numerics, contact_time=1e-2, contact_radius=2e-3)
+        body = cast("Deformable", struck(scene.geometry, numerics)).body(
+            scene.contact_modulus, SCHEMES.get("backward_euler"), 0.015
+        )
+        offer = body.offer(body.at_rest(), length)
+        compliances.append(offer.surface.displaced(np.ones_like(offer.past)) / offer.now)
+    np.testing.assert_allclose(compliances[0], compliances[1], rtol=2e-3)
+
+
 def bends(*radii: float) -> float:
     return sum(1.0 / radius for radius in radii)
 
