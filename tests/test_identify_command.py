@@ -149,6 +149,14 @@ def test_a_key_of_one_curve_that_is_none_is_named(
     assert f"{own.partition('=')[0]}: unknown key" in fault
 
 
+def test_every_bad_curve_is_told(tmp_path: Path, refused: Callable[..., list[str]]) -> None:
+    bad = [tmp_path / "silent.csv", tmp_path / "short.csv"]
+    bad[0].write_text("time_s,force_N\n" + "".join(f"{0.001 * row},0.0\n" for row in range(20)), "utf-8")
+    bad[1].write_text("time_s,force_N\n0.0,1.0\n", "utf-8")
+    faults = refused("identify", *map(str, bad), "--scene", "polymer-sphere", "--free", FREE)
+    assert [next(path.name for path in bad if path.name in fault) for fault in faults] == ["silent.csv", "short.csv"]
+
+
 @pytest.mark.tenth
 def test_a_curve_s_path_may_look_like_keys_of_its_own(curves: tuple[Path, Path], empty: Path) -> None:
     named = empty / "drop:mass=0.05.csv"

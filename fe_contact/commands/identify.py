@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from lumped.identify import Identified, Interval
     from lumped.identify.search import Reference
     from lumped.result.history import History
+    from lumped.result.score import Curve
     from lumped.scene.scene import Scene
 
 # CURVE.csv:striker.velocity=0.3,striker.mass=0.1; a path may hold colons of its own
@@ -32,8 +33,6 @@ def execute(args: argparse.Namespace) -> int:
     """Read, judge, identify, write, report; 0, or 3 where no impact came near the curves, or a key was not found."""
     from fe_contact.studies.identify_chart import plot_identified
     from lumped.identify import RECORD, identify
-    from lumped.result.curve_file import read_curve
-    from lumped.result.gate import check_curve
     from lumped.scene.scene import Scene
 
     overrides, own = base.overrides_of(args), _curves(args.curves)
@@ -43,10 +42,7 @@ def execute(args: argparse.Namespace) -> int:
     corner = None if args.corner is None else base.number(args.corner, CORNER)
     low_pass = None if args.low_pass is None else base.number(args.low_pass, LOW_PASS)
     sample = 0 if args.sample is None else _draws(args.sample)
-    curves = {path: read_curve(Path(path)) for path in own}
-    warnings = list[str]()
-    for path, curve in curves.items():
-        warnings += check_curve(curve, Scene.load(args.scene, overrides | own[path]), path, touch_at_zero=False)
+    curves, warnings = _read(own, lambda keys: Scene.load(args.scene, overrides | keys))
     free = [key.strip() for key in args.free.split(",") if key.strip()]
     progress = base.progress_of(args)
     progress(f"identifies {len(free)} keys from {len(curves)} curves")
@@ -85,6 +81,28 @@ def _curve_of(text: str) -> tuple[str, dict[str, object]]:
     if split is None or Path(text).is_file():
         return text, {}
     return split["path"], dict(parse_assignment(part) for part in split["own"].split(",") if part.strip())
+
+
+def _read(
+    own: dict[str, dict[str, object]], scene_of: Callable[[dict[str, object]], Scene]
+) -> tuple[dict[str, Curve], list[str]]:
+    """Curves by their paths, and warnings; ``scene_of`` the keys that an impact has of its own. Raises BadInput with
+    the faults of all curves.
+    """
+    from lumped.result.curve_file import read_curve
+    from lumped.result.gate import check_curve
+
+    curves, warnings, faults = dict[str, "Curve"](), list[str](), list[Fault]()
+    for path, keys in own.items():
+        scene = scene_of(keys)
+        try:
+            curves[path] = read_curve(Path(path))
+            warnings += check_curve(curves[path], scene, path, touch_at_zero=False)
+        except BadInput as bad:
+            faults += bad.faults
+    if faults:
+        raise BadInput(faults)
+    return curves, warnings
 
 
 def _draws(text: str) -> int:
