@@ -573,16 +573,20 @@ def test_only_a_dashpot_under_what_is_neither_cone_nor_parabola_needs_another_st
     assert not _hereditary.problem_of(impact(1.0, (0.5,), (0.3,), shape=shape)).rises_steeply
 
 
-def test_an_approach_with_another_start_is_told_from_the_touch_on(impact: Callable[..., Scene]) -> None:
-    """Before the first of its pieces at the speed of touch, pressed by the dashpot, 2 a eta v, a ~ depth^(1/3)."""
-    problem = _hereditary.problem_of(impact(1.0, viscosity=0.3, shape=PowerProfile(1.0, 3.0)))
+@pytest.mark.parametrize("power", [3.0, 5.2, 20.0])
+def test_an_approach_with_another_start_is_told_from_the_touch_on(power: float, impact: Callable[..., Scene]) -> None:
+    """At the speed of touch, pressed by the dashpot, 2 a eta v, a ~ depth^(1/n), over so much of the time that hardly a
+    force is left, or over fifty decades.
+    """
+    problem = _hereditary.problem_of(impact(1.0, viscosity=0.3, shape=PowerProfile(1.0, power)))
     path = alone(approach(problem, 1.0, Settings(1e-6))).path
-    assert path.breaks[0] == 0.0
-    roots = path.breaks[1] * np.linspace(0.25, 1.0, 4)
+    end = (1e-12 * problem.shortest) ** 0.5
+    roots = end * np.geomspace(max(1e-6 ** (0.5 * power), 1e-50), 1.0, 50)
     depth, velocity, _, force = path.at(roots)
+    assert path.breaks[0] == 0.0
     assert velocity == pytest.approx(1.0)
     assert depth == pytest.approx(roots**2)
-    assert force == pytest.approx(force[-1] * (depth / depth[-1]) ** (1.0 / 3.0), rel=1e-2)
+    assert force == pytest.approx(force[-1] * (depth / depth[-1]) ** (1.0 / power), rel=1e-5)
 
 
 def test_a_sphere_begins_as_the_parabola_that_it_is_at_its_tip(impact: Callable[..., Scene]) -> None:

@@ -5,8 +5,10 @@ It is followed over r = sqrt(t): depth, load and memories are smooth in r at tou
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -28,6 +30,8 @@ FIRST = 0.4
 FAINT = 1e-3
 # Where the force rises steeply the velocity is taken as that of touch, up to this share of the stiffest contact time.
 TOUCH = 1e-12
+EARLIER = 0.3  # the end of such a piece over that of the next: short enough for a power of r to be a polynomial in it
+MOST_EARLIER = 120  # work: of these pieces, which then begin with 1e-63 of the last one
 
 
 @dataclass(frozen=True)
@@ -118,6 +122,10 @@ def _to_velocity(
 
 
 def _touch(problem: Hereditary, settings: Settings) -> Path:
-    """The very first piece, at the velocity of touch."""
+    """The very first pieces, at the velocity of touch, from where the force is less than what a piece may err by."""
     end = (TOUCH * problem.shortest) ** 0.5
-    return Path.of([0.0, end], [problem.early((end * np.append(0.0, settings.table.points)) ** 2)])
+    earlier = min(math.ceil(math.log(settings.rtol) / (problem.power * math.log(EARLIER))), MOST_EARLIER)
+    ends = end * EARLIER ** np.arange(earlier, -1.0, -1.0)
+    breaks, nodes = np.append(0.0, ends), np.append(0.0, settings.table.points)
+    pieces = [problem.early((low + (high - low) * nodes) ** 2) for low, high in pairwise(breaks)]
+    return Path.of(breaks.tolist(), pieces)

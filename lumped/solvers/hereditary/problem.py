@@ -133,11 +133,13 @@ class Hereditary:
 
         It does where a viscosity meets dy/d depth ~ depth^beta and 2 beta is none: profiles c r^n, n neither 1 nor 2.
         """
-        if not self.modulus.viscosity:
-            return False
+        return bool(self.modulus.viscosity) and abs(self.power - round(self.power)) > WHOLE
+
+    @cached_property
+    def power(self) -> float:
+        """Of r that dy/d depth starts with, 2 beta."""
         _, (near, far) = self.loads(SHALLOW * np.array([1.0, 4.0]))
-        power = float(np.log2(far / near))
-        return abs(power - round(power)) > WHOLE
+        return float(np.log2(far / near))
 
     def early(self, times: Array) -> Array:
         """States so soon after touch, times (n,), that the velocity is still that of touch; shape (4 + K, n).
