@@ -54,7 +54,7 @@ class Answer:
 
     `columns` tells it at any time, `times` are its own rows; `values` are the quantities (None where undefined),
     without history_l2. `until`: the last time to follow, s; None: the scene's. `contacts`: the several contacts of one
-    motion.
+    motion. `mass`: what moves, kg, by which the impulse goes with the velocity.
     """
 
     times: Array
@@ -65,6 +65,7 @@ class Answer:
     message: str = ""
     until: float | None = None
     contacts: tuple[Mapping[str, float | None], ...] = ()
+    mass: float = 0.0
 
     @property
     def rounding(self) -> float:
@@ -129,6 +130,7 @@ def bars(fine: Answer, coarse: Answer, safety: float) -> tuple[dict[str, Quantit
     force = fine.columns.force(places)
     missed = force - coarse.columns.force(places)
     worst, l2 = _largest_and_norm(times, force[: times.size], missed[: times.size])
+    passed = _impulse_missed(fine, coarse, times)
     quantities = {"history_l2": Quantity(0.0, safety * l2 + fine.rounding, "1")}
     for name, value in fine.values.items():
         other, error = coarse.values[name], None
@@ -136,6 +138,8 @@ def bars(fine: Answer, coarse: Answer, safety: float) -> tuple[dict[str, Quantit
             scale = 1.0 if name == "restitution" else abs(value)
             least = LEAST_SHARE * l2 + fine.rounding + ROUNDING_OF.get(name, 0.0)
             error = max(abs(value - (other or 0.0)), least * scale)
+            if name == "impulse":
+                error = max(error, passed)
             if name == "peak_time":
                 error = near.shift(force[times.size :], missed[times.size :], error)
             error *= safety
@@ -148,6 +152,15 @@ def _times_of_both(fine: Answer, coarse: Answer) -> Array:
     """Their own rows; where the force jumps, at an end, the two know it to rounding: of times as close the first."""
     t = np.sort(np.concatenate([fine.times, coarse.times]))
     return np.asarray(t[np.append(True, np.diff(t) > ROUNDING * t[-1])])
+
+
+def _impulse_missed(fine: Answer, coarse: Answer, times: Array) -> float:
+    """The mass times the largest difference of two velocities at these times, N s, where an end cuts a contact: there
+    the two may meet by chance. Where the contact ends by itself nothing.
+    """
+    if fine.end is not End.TIME or not fine.mass:
+        return 0.0
+    return fine.mass * float(np.abs(fine.columns(times)[1] - coarse.columns(times)[1]).max())
 
 
 def _largest_and_norm(times: Array, force: Array, missed: Array) -> tuple[float, float]:

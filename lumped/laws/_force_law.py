@@ -191,6 +191,7 @@ def _answer(law: ForceLaw, scene: Scene, track: PointTrack, outcomes: Sequence[O
         "; ".join(part for part in (law.source, said) if part),
         until,
         tuple(outcome._asdict() for outcome in outcomes) if scene.motion.impacts > 1 else (),
+        scene.reduced_mass,
     )
 
 

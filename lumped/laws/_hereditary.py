@@ -184,7 +184,8 @@ def answer_of(scene: Scene, problem: Hereditary, course: Course) -> Answer:
     values = values_of(scene, course.end, peak, depth * scales.depth, velocity, time)
     said = "" if course.end is End.SEPARATED else course.end.value
     columns = _HereditaryColumns(problem, course)
-    return Answer(course.times * scales.time, columns, values, course.end, _energy(scene, problem, state), said)
+    energy, mass = _energy(scene, problem, state), scene.reduced_mass
+    return Answer(course.times * scales.time, columns, values, course.end, energy, said, mass=mass)
 
 
 @dataclass(frozen=True, eq=False)

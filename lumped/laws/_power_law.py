@@ -94,7 +94,8 @@ def spring_of_peak(force: float, alpha: float, bodies: Bodies) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class SpringDamped(PowerLaw):
-    """The force is zero at depth zero and nowhere else, so that both exits are one, and it never jumps.
+    """The force is zero at depth zero and never jumps. Both exits are one, but where something else than the law drives
+    the bodies apart: faster than 1/factor it pulls.
 
     Its restitution depends on factor times the velocity at touch alone, whatever the exponent.
     """
@@ -104,6 +105,11 @@ class SpringDamped(PowerLaw):
     @abstractmethod
     def factor(self, stage: Stage) -> float:
         """The damper's force over the spring's and the rate, s/m."""
+
+    def letting_go(self, stage: Stage) -> float:
+        """-1/factor, m/s."""
+        factor = self.factor(stage)
+        return -1.0 / factor if factor else -math.inf
 
     def damper(self, depth: Real, rate: Real, stage: Stage) -> Real:
         """k depth^alpha factor rate."""
@@ -127,6 +133,11 @@ class OscillatorDamped(PowerLaw):
     c: float
     alpha: float = 1.5
     rebounds: ClassVar[bool]
+
+    @property
+    def tensile(self) -> bool:
+        """By a damper that acts in the rebound."""
+        return self.rebounds and self.c > 0.0
 
     def exponents(self, stage: Stage) -> tuple[float, ...]:
         """The spring's and the damper's."""

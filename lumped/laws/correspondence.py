@@ -52,8 +52,12 @@ class HereditaryForce(ForceLaw):
     scale: float
     within_step: StepLoad | None = None
     name: ClassVar[str] = "correspondence"
-    tensile: ClassVar[bool] = True
     remembers: ClassVar[bool] = True
+
+    @property
+    def tensile(self) -> bool:
+        """By what it remembers."""
+        return True
 
     @property
     def parameters(self) -> dict[str, object]:

@@ -23,7 +23,6 @@ class Kelvin(OscillatorDamped):
 
     alpha: float = 1.0
     name: ClassVar[str] = "kelvin"
-    tensile: ClassVar[bool] = True
     rebounds: ClassVar[bool] = True
 
 

@@ -58,7 +58,11 @@ class KuwabaraKono(PowerLaw):
     A: float
     alpha: float = 1.5
     name: ClassVar[str] = "kuwabara_kono"
-    tensile: ClassVar[bool] = True
+
+    @property
+    def tensile(self) -> bool:
+        """By its damper."""
+        return self.A > 0.0
 
     def exponents(self, stage: Stage) -> tuple[float, ...]:
         """The spring's and the damper's."""

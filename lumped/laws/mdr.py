@@ -149,7 +149,8 @@ def _answer(scene: Scene, level: Level, again: bool) -> Answer:
         time = np.append(time[time < level.last], level.last)
         depth, velocity, force, _ = dense(time)
     values = values_of(scene, end, peak(time, force), float(depth.max()), float(velocity[-1]), float(time[-1]))
-    return Answer(time, dense, values, end, _energy(scene, level), "" if separated else end.value)
+    said, mass = "" if separated else end.value, scene.reduced_mass
+    return Answer(time, dense, values, end, _energy(scene, level), said, mass=mass)
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,6 @@ class Tsuji(OscillatorDamped):
     """The law with k, N/m^alpha, and the damper's c, N s/m^((alpha + 1)/2)."""
 
     name: ClassVar[str] = "tsuji"
-    tensile: ClassVar[bool] = True
     rebounds: ClassVar[bool] = True
 
 

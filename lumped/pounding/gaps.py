@@ -7,6 +7,7 @@ approach, so that no touch is missed.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -22,6 +23,7 @@ from lumped.solvers.point.contact import following, force_left
 from lumped.solvers.radau import Nodes
 
 UNTOUCHED = Stage(True, 0.0, 0.0)
+PULLED = 1e-9  # rounding: of its spring's force, what a law whose rebound almost lets go may pull with
 
 
 class Mode(Enum):
@@ -104,11 +106,15 @@ def pressed(law: ForceLaw, depth: float, rate: float, slowest: float, time: floa
 
 
 def again(law: ForceLaw, dent: Dent, since: float, *touch: float) -> GapState:
-    """A dent pressed again, as by :func:`pressed` with the arguments of `touch`; or followed, where it would pull."""
+    """A dent pressed again, as by :func:`pressed` with the arguments of `touch`; or followed, where it would pull.
+
+    The speed at touch is that with which the dent was made, for storeys that have not left it touch no second time.
+    """
     depth, rate = touch[:2]
     memory = dent.recalled(since)
     mode = Mode.FOLLOWED if law.follows and law.at_start(depth, rate, memory) < 0.0 else Mode.PRESSED
-    return replace(pressed(law, *touch), mode=mode, memory=memory)
+    found = pressed(law, *touch)
+    return replace(found, mode=mode, stage=found.stage._replace(speed=dent.stage.speed), memory=memory)
 
 
 class GapEvent(NamedTuple):
@@ -148,8 +154,11 @@ def events_of(gap: int, state: GapState, law: ForceLaw, depth: float, noise: flo
     def value(step: FrameStep) -> Array:
         return force_left(step.depth[gap], step.force[gap]) if by_force else step.depth[gap]
 
+    rate = law.letting_go(state.stage) * (1.0 + PULLED)
     if not state.stage.approaching:
         found.append(GapEvent(gap, Happening.EXIT, value, surfaces=not by_force))
+        if law.exit == "force" and rate > -math.inf:
+            found.append(GapEvent(gap, Happening.EXIT, lambda step: step.rate[gap] - rate))
     elif law.follows:
         found.append(GapEvent(gap, Happening.EXIT, value, lambda step: np.maximum.accumulate(step.force[gap] > 0.0)))
     return found

@@ -157,6 +157,23 @@ def test_bars_cover_closed_forms_and_are_not_far_above(campaign_size: Callable[[
         assert float(np.median(ratios)) < WIDE, name
 
 
+@pytest.mark.parametrize("damping", [0.0, 1e-13])
+@pytest.mark.parametrize("alpha", [2.0, 2.5, 3.0])
+def test_a_force_that_ends_flat_ends_within_its_bar(alpha: float, damping: float) -> None:
+    """A damper so faint changes the end of a spring's contact by less than what the bar of one without would show."""
+    rng = np.random.default_rng(22)
+    for tolerance in (1e-3, 1e-5, 1e-6, 1e-7):
+        scene, _ = spring(rng)
+        assert scene.law is not None
+        depth = (0.5 * (alpha + 1.0) * scene.mass * scene.velocity**2 / scene.law.values["k"]) ** (1.0 / (alpha + 1.0))
+        ends = 2.0 * depth / scene.velocity * beta(1.0 / (alpha + 1.0), 0.5) / (alpha + 1.0)
+        values = {"k": scene.law.values["k"], "alpha": alpha, "alpha_t": damping}
+        faint = replace(scene, law=LawChoice("tsuji", values))
+        duration = simulate(laws.get("tsuji").of(faint), faint, tolerance).quantities["duration"]
+        changed = 100.0 * damping ** (2.0 / (alpha + 1.0)) * ends  # by the depth where spring and damper are equal
+        assert abs(duration.value - ends) <= duration.error + changed, (tolerance, duration)
+
+
 def test_what_a_coarse_march_lacks_is_known_to_first_order() -> None:
     """Far from rounding the bars of a spring are SAFETY times its errors, no less and no more."""
     rng, known = np.random.default_rng(25), defaultdict(list)
@@ -395,6 +412,35 @@ def test_an_impulse_cut_off_is_known_to_rounding_and_no_better(uncovered: Callab
     )  # fmt: skip
     law = laws.get("kuwabara_kono").of(scene)
     assert not uncovered(law.simulate(scene, 0.1), law.simulate(scene, 1e-9))
+
+
+@pytest.mark.parametrize(
+    ("law", "shape", "impact", "material", "end", "tolerance"),
+    [
+        (
+            "ting", {"shape": "cone", "angle": 12.678381504706799}, (0.5836295470436739, 0.0017823161801486366),
+            (12818.549200228883, -0.14378842349048898, 1.0199658530199498, 0.0006543161), 0.360377257446072, 0.0027685,
+        ),
+        (
+            "mdr", {"shape": "power", "coefficient": 4.6898414531354786e-06, "exponent": 3.128982150051435},
+            (1282.746720141593, 2.2319834360303643),
+            (33805185.390219755, -0.1557289596975986, 114.4369837655644, 7.432226e-07), 2.222404284086163e-4, 3.9889e-5,
+        ),
+    ],
+)  # fmt: skip
+def test_an_impulse_cut_off_where_two_integrations_meet_by_chance_has_a_true_bar(
+    law: str, shape: dict[str, Any], impact: tuple[float, float], material: tuple[float, ...], end: float,
+    tolerance: float, uncovered: Callable[..., dict[str, float]],
+) -> None:  # fmt: skip
+    """Of a relaxation much faster than the contact, which is hardly resolved: by chance both tell one velocity then."""
+    striker = {**shape, "mass": impact[0], "velocity": impact[1]}
+    base = Scene.load("polymer-cone", {"striker": striker})
+    young, nu, share, time = material
+    relaxing = Material(Relaxation(young, (young * share,), (time,)), nu)
+    scene = replace(base, material=relaxing, motion=Motion(end_time=end))
+    found, exact = simulate(laws.get(law).of(scene), scene, tolerance), simulate(laws.ting.of(scene), scene, 1e-9)
+    assert found.message == End.TIME.value
+    assert not uncovered(found, exact, ["impulse"])
 
 
 def test_an_impulse_cut_off_under_a_weight_is_known_as_well_as_one_that_is_not() -> None:

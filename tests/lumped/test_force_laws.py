@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
 
 from lumped import BadInput, Motion, Scene, laws, restitution
 from lumped.numbers import Real
@@ -582,3 +583,37 @@ def test_what_a_motion_does_not_reach_is_no_contact() -> None:
     for until, ends in ((0.999, [End.SEPARATED]), (1.0001, [End.SEPARATED, End.TIME])):
         found = motion(law, bodies, law.exit, 3, until * second.start_time, 1e-8).contacts
         assert [one.end for one in found] == ends
+
+
+@pytest.mark.parametrize("exit", ["force", "depth"])
+@pytest.mark.parametrize("name", ["hertzdamp", "hunt_crossley", "khatiwada"])
+def test_a_law_pulls_a_striker_that_a_weight_draws_back_only_where_it_ends_with_the_depth(name: str, exit: str) -> None:
+    """Faster than chi allows: against an independent integration of F = k d^alpha (1 + chi d') to its own end."""
+    damping, alpha, weight = 5.0, 1.2, -0.05 * VELOCITY * math.sqrt(K / MASS)
+    own = {
+        "hertzdamp": {"xi": damping},
+        "hunt_crossley": {"chi": damping / VELOCITY},
+        "khatiwada": {"c": damping * K / VELOCITY},
+    }
+    case = replace(scene(name, alpha=alpha, exit=exit, **own[name]), model=Model(gravity=weight))
+    result = laws.get(name).of(case).simulate(case, 1e-6)
+
+    def rates(time: float, y: np.ndarray) -> list[float]:
+        force = K * max(y[0], 0.0) ** alpha * (1.0 + damping * y[1] / VELOCITY)
+        return [y[1], weight - force / MASS, force]
+
+    def left(time: float, y: np.ndarray) -> float:
+        pushes = 1.0 + damping * y[1] / VELOCITY if exit == "force" else math.inf
+        return float(min(y[0] + 1e-30, pushes)) if time > 0.0 else 1.0
+
+    left.terminal, left.direction = True, -1  # type: ignore[attr-defined]
+    found = solve_ivp(
+        rates, (0.0, 1.0), [0.0, VELOCITY, 0.0], "DOP853", events=left, rtol=1e-12, atol=1e-16, max_step=1e-5
+    )
+    end, (depth, rate, impulse) = float(found.t[-1]), found.y[:, -1]
+    assert (depth > 1e-3 * found.y[0].max()) == (exit == "force")
+    assert result.quantities["duration"].value == pytest.approx(end, rel=1e-8)
+    assert result.quantities["restitution"].value == pytest.approx(-rate / VELOCITY, abs=1e-8)
+    assert result.quantities["impulse"].value == pytest.approx(impulse, rel=1e-8)
+    least = float(result.history.force.min())
+    assert least >= 0.0 if exit == "force" else least < -1e-4 * result.history.force.max()

@@ -56,10 +56,14 @@ def laws_of(frames: PoundingFrames, name: str, **values: Any) -> list[ForceLaw]:
 
 @dataclass
 class Formula:
-    """A law written anew: force of depth and rate, whether it approaches, and the speed at touch."""
+    """A law written anew: force of depth and rate, whether it approaches, and the speed at touch.
+
+    `pushes`: of the rate and the speed at touch, what is above zero where it pushes, beside the depth.
+    """
 
     force: Callable[[float, float, bool, float], float]
     by_force: bool = False
+    pushes: Callable[[float, float], float] = lambda rate, speed: np.inf
 
 
 FORMULAS = {
@@ -67,7 +71,9 @@ FORMULAS = {
     "hertz": lambda law: Formula(lambda d, r, inward, v: law.k * d**1.5),
     "kelvin": lambda law: Formula(lambda d, r, inward, v: law.k * d + law.c * r, law.exit == "force"),
     "jankowski": lambda law: Formula(lambda d, r, inward, v: law.k * d**1.5 + (law.c * d**0.25 * r if inward else 0.0)),
-    "hertzdamp": lambda law: Formula(lambda d, r, inward, v: law.k * d**1.5 * (1.0 + law.xi * r / v)),
+    "hertzdamp": lambda law: Formula(
+        lambda d, r, inward, v: law.k * d**1.5 * (1.0 + law.xi * r / v), pushes=lambda r, v: 1.0 + law.xi * r / v
+    ),
 }
 
 
@@ -107,6 +113,8 @@ class Independent:
                 return lambda t, y: rows[i] @ y[n:]
             if modes[i] == "out" and formulas[i].by_force:
                 return lambda t, y: formulas[i].force(depth(y), rows[i] @ y[n:], False, speeds[i])
+            if modes[i] == "out":
+                return lambda t, y: min(depth(y), formulas[i].pushes(rows[i] @ y[n:], speeds[i]))
             return lambda t, y: depth(y)
 
         time, y = 0.0, frames.start
@@ -141,7 +149,8 @@ class Independent:
                     if modes[i] == "out":
                         one = opened.pop(i)
                         found.append((i, one["start"], time, one["peak"]))
-                    modes[i] = "leaving" if modes[i] == "out" and formulas[i].by_force else "apart"
+                    left = modes[i] == "out" and rows[i] @ y[:n] - frames.distances[i] > 1e-12
+                    modes[i] = "leaving" if left else "apart"
         return found
 
 
@@ -221,6 +230,16 @@ def test_the_published_stop_is_struck_as_an_independent_integration_says() -> No
         assert contact.start == pytest.approx(start, abs=1e-8)
         assert contact.end == pytest.approx(end, abs=1e-8)
         assert contact.peak_force == pytest.approx(peak, rel=1e-4)
+
+
+@pytest.mark.parametrize("exit", ["force", "depth"])
+def test_frames_pull_each_other_only_where_their_law_ends_with_the_depth(exit: str) -> None:
+    """Columns draw heavily damped storeys apart faster than their law rebounds."""
+    keys = {"law.name": "hertzdamp", "law.k": 2.7e9, "law.e": 0.1, "law.exit": exit, "motion.end_time": 6.0}
+    case = load("two-frames", keys)
+    force = simulate(case.frames, case.laws(), case.ground, case.end_time).motion.force
+    pull = -float(force.min()) / float(force.max())
+    assert pull > 1e-3 if exit == "depth" else pull < 1e-8
 
 
 # limits

@@ -6,7 +6,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -88,11 +88,18 @@ class Step(NamedTuple):
 class PointLaw(ABC):
     """A force between two masses, F(depth, rate), N; depths >= 0 in m, rates in m/s, scalars or arrays.
 
-    Within one stage the force is smooth but for its corners. `tensile`: whether it can pull before the depth is zero.
-    What is said here is so without a memory, without corners, and where the force is smooth in time from touch on.
+    Within one stage the force is smooth but for its corners. What is said here is so without a memory, without
+    corners, and where the force is smooth in time from touch on.
     """
 
-    tensile: ClassVar[bool] = False
+    @property
+    def tensile(self) -> bool:
+        """Whether it pulls before the depth is zero, in every rebound."""
+        return False
+
+    def letting_go(self, stage: Stage) -> float:
+        """The rate, m/s, below which it pulls at every depth; no rebound is so fast but one that something drives."""
+        return -math.inf
 
     def grading(self, stage: Stage) -> int:
         """The power p for which a stage's force near depth zero is smooth in the p-th root of the time from there."""

@@ -5,6 +5,7 @@ Between two of them the bodies fly freely, and gravity may bring them back.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,9 +14,10 @@ from lumped.errors import TooManySteps
 from lumped.numbers import Array
 from lumped.result.history import AT_REST, End
 from lumped.solvers.point.bodies import Bodies, PointLaw, Stage, State
-from lumped.solvers.point.phase import Event, PointMarch, PointPhase
+from lumped.solvers.point.phase import DEPTH, RATE, Event, PointMarch, PointPhase
 from lumped.solvers.radau import STAGES
 
+EXITS = ("exit", "let go")  # the events that end a contact
 MOST_TURNS = 2000  # work: phases of one contact, each until a turn or a corner of the law
 # Of the velocity at touch: what leaves so slowly creeps back for ever, but for rounding.
 FAINTEST_EXIT = 1e-20
@@ -70,7 +72,7 @@ def contact(
     corners = law.corners(stage)
     phases: list[PointPhase] = []
     for _ in range(MOST_TURNS):
-        events = _events(law, stage, exit_rule) | _corner(stage, corners)
+        events = _events(law, stage, exit_rule, bodies) | _corner(stage, corners)
         march = PointMarch(law, stage, bodies, events, until, tolerance * bodies.velocity)
         phase = march.phase(start, time, length)
         phases.append(phase)
@@ -79,7 +81,7 @@ def contact(
             return Contact(tuple(phases), End.TIME)
         if phase.event == "rest":
             return Contact(tuple(phases), End.REST)
-        if phase.event == "exit":
+        if phase.event in EXITS:
             faint = abs(start.rate) < FAINTEST_EXIT * bodies.velocity
             return Contact(tuple(phases), End.REST if faint else End.SEPARATED)
         if phase.event == "corner":
@@ -98,16 +100,25 @@ def following(law: PointLaw, stage: Stage, depth: float) -> Stage:
     return Stage(not stage.approaching, deepest, stage.speed, depth, kept)
 
 
-def leaving(law: PointLaw, exit_rule: str) -> Event:
-    """What ends a contact: the force where the law can pull and must not, else the depth."""
-    return FORCE_LEFT if law.tensile and exit_rule == "force" else DEPTH_LEFT
+def leaving(law: PointLaw, stage: Stage, exit_rule: str, bodies: Bodies) -> dict[str, Event]:
+    """What ends a contact: the force where the law can pull and must not, else the depth.
+
+    And the rate of bodies that a weight draws apart, from which on a law that else never pulls would.
+    """
+    if law.tensile and exit_rule == "force":
+        return {"exit": FORCE_LEFT}
+    rate = law.letting_go(stage)
+    if exit_rule == "depth" or bodies.gravity >= 0.0 or rate == -math.inf:
+        return {"exit": DEPTH_LEFT}
+    let_go = Event(lambda step: step.rate - rate, lambda step: step.last_acceleration, told_by=RATE)
+    return {"exit": DEPTH_LEFT, "let go": let_go}
 
 
-def _events(law: PointLaw, stage: Stage, exit_rule: str) -> dict[str, Event]:
+def _events(law: PointLaw, stage: Stage, exit_rule: str, bodies: Bodies) -> dict[str, Event]:
     """What ends a stage: the turn of the motion, and in the rebound the end of contact."""
     if stage.approaching:
         return {"turn": TURN}
-    return {"exit": leaving(law, exit_rule), "turn": TURN_BACK}
+    return leaving(law, stage, exit_rule, bodies) | {"turn": TURN_BACK}
 
 
 def _corner(stage: Stage, corners: tuple[float, ...]) -> dict[str, Event]:
@@ -126,7 +137,7 @@ def force_left(depth: Array, force: Array) -> Array:
 
 TURN = Event(lambda step: step.rate, lambda step: step.last_acceleration)
 TURN_BACK = Event(lambda step: -step.rate, lambda step: -step.last_acceleration)
-DEPTH_LEFT = Event(lambda step: step.depth, lambda step: step.end.rate, surfaces=True)
+DEPTH_LEFT = Event(lambda step: step.depth, lambda step: step.end.rate, told_by=DEPTH)
 FORCE_LEFT = Event(
     lambda step: force_left(step.depth, step.force), lambda step: step.last_slope(step.force), rough=True
 )

@@ -23,7 +23,7 @@ from lumped.numbers import Array
 from lumped.result.history import AT_REST, End
 from lumped.solvers.point.bodies import TINY, Bodies, PointLaw, Stage
 from lumped.solvers.point.contact import Contact, following, leaving
-from lumped.solvers.point.phase import PointPhase
+from lumped.solvers.point.phase import RATE, PointPhase
 from lumped.solvers.point.track import Outcome, PointRow, PointTrack, legendre_terms
 from lumped.solvers.radau import STAGES, paced, radau
 
@@ -78,14 +78,18 @@ def _end(track: PointTrack, bodies: Bodies, exit_rule: str, last: Deviation) -> 
     A weight may press far deeper than the velocity at touch would, and what is rounded there is carried to the end.
     """
     one = track.motion.contacts[0]
-    depth, rate, force = (float(part[-1, -1]) for part in last[5:])
+    lacking = [float(part[-1, -1]) for part in last[5:]]
+    rate = lacking[RATE]
     if one.end is not End.SEPARATED:
         return 0.0, SAFETY * abs(rate)
-    event, step = leaving(track.law, exit_rule), one.phases[-1].last
-    later = -(depth if event.surfaces else force) / event.slope(step)
+    phase, step = one.phases[-1], one.phases[-1].last
+    event = leaving(track.law, phase.stage, exit_rule, bodies)[phase.event or "exit"]
+    later = -lacking[event.told_by] / event.slope(step)
     carried = [step for phase in one.phases for step in phase.steps] if bodies.gravity > 0.0 else [step]
     around = max(float(np.abs(event.value(step)).max()) for step in carried)
-    noise = ROUNDING * around / abs(event.slope(step)) + ROUNDING_OF_TIME * one.end_time
+    # a force that ends flat is not left at its end to the last digit
+    short = SAFETY * abs(float(event.value(step)[-1]))
+    noise = (ROUNDING * around + short) / abs(event.slope(step)) + ROUNDING_OF_TIME * one.end_time
     acceleration = bodies.gravity - float(step.force[-1]) / bodies.mass
     return SAFETY * abs(later) + noise, SAFETY * abs(rate + acceleration * later) + abs(acceleration) * noise
 

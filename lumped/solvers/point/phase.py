@@ -33,6 +33,7 @@ PRECISE = 1e-14  # of the time reached: where an event lies
 # Rounding: of a step's length, by which it still changes where it ends with an event; so much of the change before is
 # left of what falls no more.
 ROUNDED, NO_BETTER = 1e-6, 0.5
+LINEAR = 0.9  # secants leave so much less of it, where a force ends like a power of the time up to the fifth
 # So much rougher than allowed a step need not be located any better to be refused.
 HOPELESS = 2.0
 
@@ -90,17 +91,25 @@ def roughness(step: Step) -> float:
     return step.length * float(np.abs(step.nodes.series[-2:] @ step.gain).max())
 
 
+DEPTH, RATE, FORCE = range(3)
+
+
 class Event(NamedTuple):
     """An event happens where its value, at the points of a step, is no longer above zero.
 
-    `slope`: the value's slope over time at the end of a step; where it is rough secants take its place. `surfaces`:
-    at depth zero.
+    `slope`: the value's slope over time at the end of a step; where it is rough secants take its place. `told_by`:
+    which of DEPTH, RATE and FORCE its value goes with.
     """
 
     value: Callable[[Step], Array]
     slope: Callable[[Step], float]
     rough: bool = False
-    surfaces: bool = False
+    told_by: int = FORCE
+
+    @property
+    def surfaces(self) -> bool:
+        """Whether it happens at depth zero."""
+        return self.told_by == DEPTH
 
 
 @dataclass(frozen=True)
@@ -215,7 +224,7 @@ class PointMarch:
             low, high = (low, length) if at <= 0.0 else (length, high)
             following = length - at / slope if slope < 0.0 else low
             change = abs(following - length)
-            rounded = change <= ROUNDED * length and change > NO_BETTER * before
+            rounded = change <= ROUNDED * length and change > (LINEAR if event.rough else NO_BETTER) * before
             if at == 0.0 or rounded or change <= PRECISE * (now + length):
                 return trial
             before = change
