@@ -47,12 +47,13 @@ from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.result import IndentationLeft, LedgerEntry, Result, meets
 from lumped.scene.scene import Scene
 
-SECONDS = 8.0  # processor time of an impact to 1e-3, about
+# Processor time of an impact, s, about: with so many elements along the contact radius and steps, and their powers.
+SECONDS, SO_MANY, OF_ELEMENTS, OF_STEPS = 10.0, (4.5, 44), 2.0, 0.4
 ROWS = 400  # of each half of an impact: the line between two errs by 1e-5 of the force
 GRID = 500  # depths at which a loading is told
 SPRUNG = np.linspace(0.0, 1.0, 101)  # shares of what springs back, from parting on
 DEGREE = 5  # of the polynomial through the forces of a release, to the power that makes them a line
-RELEASES, RELEASING = 12, 0.125  # steps of a release at least, and over those of a loading: edges cross elements
+RELEASES = 16  # steps of a release: it errs by where edges cross elements, alike whatever the steps of the loading were
 # Of the run that tells how deep an impact will go: a soft penalty settles soon where a body flows from the touch on.
 PILOT: Given = {"elements_per_contact": 2.0, "steps": 16, "penalty": 4000.0}
 PILOT_FIRST = 0.01  # of its depth, its first step: the work up to there is 1e-4 of the whole
@@ -241,7 +242,7 @@ def let_go(loading: PlasticLoading, deepest: float, power: float) -> list[Statio
     last = [place.depth < depth * (1.0 - 1e-6) for place in loading.ends].index(False) - 1
     before, here = loading.ends[max(last - 1, 0)], loading.ends[last]
     taken = list(presser.loaded(before, here, depth))
-    return presser.released(taken[-1], max(RELEASES, round(RELEASING * loading.numerics.steps)), power)
+    return presser.released(taken[-1], RELEASES, power)
 
 
 def answered(loading: PlasticLoading, known: Answered, places: list[Station], power: float) -> Answered:
@@ -417,9 +418,11 @@ def check(scene: Scene, given: Given) -> None:
 
 
 def expected(scene: Scene, given: Given) -> tuple[float, float]:
-    """Tolerance, and processor time, s, about. Raises BadInput."""
+    """Tolerance, and processor time, s, about, if nothing has to be finer. Raises BadInput, NotReached."""
     check(scene, given)
-    return tolerance_of(given), SECONDS
+    numerics, (elements, steps) = settings(given, pilot(scene).course), SO_MANY
+    finer = (numerics.elements_per_contact / elements) ** OF_ELEMENTS
+    return tolerance_of(given), SECONDS * max(finer, 1.0) * (numerics.steps / steps) ** OF_STEPS
 
 
 def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:

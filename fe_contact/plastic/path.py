@@ -65,7 +65,7 @@ class PlasticFlowSlow(NotReached):
 class Station(NamedTuple):
     """A body pressed ``depth`` deep: force, contact radius, in units of the ground; on its mesh, ``scale`` long in
     these units, displacement (2 N,) in units of the mesh, state, pressure (facets, points). ``worked``: plastic work so
-    far, in units of the ground.
+    far, in units of the ground; ``middle``: the end of the first stage of the step that led here.
     """
 
     depth: float
@@ -76,6 +76,7 @@ class Station(NamedTuple):
     radius: float
     scale: float = 1.0
     worked: float = 0.0
+    middle: Station | None = None
 
 
 class Counts(NamedTuple):
@@ -169,12 +170,13 @@ class Presser:
     def _stepped(self, before: Station, here: Station, depth: float) -> Station:
         """Two stages. Raises EquilibriumLost."""
         stage, spread = here.depth + GAMMA * (depth - here.depth), self._spread_of(before, here)
-        share = (stage - here.depth) / (here.depth - before.depth) if before is not here else 0.0
-        middle = self._stage(here.state, before, here, stage, (share, spread))
+        first, second = ((before, here.middle), (here.middle, here)) if here.middle else ((before, here), None)
+        middle = self._stage(here.state, first, here, stage, spread)
         on = (1.0 - GAMMA) / GAMMA
         began = self.ground.carried(here.state, middle.scale / here.scale)
         state = tuple(start + on * (flowed - start) for start, flowed in zip(began, middle.state, strict=True))
-        return self._worked(here, self._stage(state, here, middle, depth, (on, spread)))
+        there = self._stage(state, second or (here, middle), middle, depth, spread)
+        return self._worked(here, there._replace(middle=middle))
 
     def _worked(self, here: Station, there: Station) -> Station:
         """``there`` with the work of the step from ``here``: a mesh that has grown tells no more what was done when it
@@ -190,14 +192,17 @@ class Presser:
             return self.spread
         return math.log(here.radius / before.radius) / math.log(here.depth / before.depth)
 
-    def _stage(self, state: State, before: Station, here: Station, depth: float, guess: tuple[float, float]) -> Station:
-        """From ``here`` to a depth after ``state``; guessed: it goes on by a share of what happened since ``before``,
-        the contact radius as a power of the depth.
+    def _stage(
+        self, state: State, like: tuple[Station, Station], here: Station, depth: float, spread: float
+    ) -> Station:
+        """From ``here`` to a depth after ``state``; guessed: it goes on as between two stations that are ``like`` it,
+        for a first stage those of the one before; the contact radius as a power of the depth.
         """
-        share, spread = guess
+        first, last = like
+        share = (depth - here.depth) / (last.depth - first.depth) if last is not first else 0.0
         ground, radius = self.ground, here.radius * (depth / here.depth) ** spread
-        onwards = here.displacement - ground.moved(before.displacement, here.scale / before.scale)
-        pressure = np.maximum(here.pressure + share * (here.pressure - before.pressure), 0.0)
+        onwards = last.displacement - ground.moved(first.displacement, last.scale / first.scale)
+        pressure = np.maximum(here.pressure + share * (last.pressure - first.pressure), 0.0)
         for _ in range(FITTED):
             scale = 1.0 if ground.rim else max(radius, here.scale)  # what has flowed in is not told again
             growth = scale / here.scale
