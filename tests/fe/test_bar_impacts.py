@@ -306,3 +306,16 @@ def test_a_march_that_is_cut_off_takes_the_steps_that_there_are_until_then(end: 
     """A hundred in an echo."""
     scene = replace(Scene.load("bar-impact"), motion=Motion(end_time=end))
     assert run(scene, plan(scene, {"steps": 100}).numerics).steps == math.ceil(100 * end / ECHO)
+
+
+def test_a_block_four_times_as_wide_and_heavy_leaves_out_as_much() -> None:
+    """All that its ledger estimates goes with the force, and that with the area."""
+
+    def estimates(times: float) -> list[float | None]:
+        keys = {"striker.area": 1.5e-4 * times, "striker.mass": 0.02 * times, "model.direction": "down"}
+        scene = Scene.load("polymer-prism-waves", {**keys, "striker.sides": "confined"})
+        return [entry.estimate for entry in plan(scene, {}).ledger]
+
+    one, four = estimates(1.0), estimates(4.0)
+    assert sum(bool(estimate) for estimate in one) >= 1
+    assert four == [None if estimate is None else pytest.approx(estimate) for estimate in one]

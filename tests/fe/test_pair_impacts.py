@@ -309,8 +309,11 @@ def test_two_bodies_together_sink_in_by_what_each_does() -> None:
     sides = tuple(BodySide(operator, Relaxation(young), operator.trace) for young in (1.25, 5.0))
     body = Stacked(operator, sides, 0.05).body(Relaxation(1.0), SCHEMES.get("backward_euler"), 1.0)
     pressure = 2.0 - operator.points
-    found, _ = body.after(body.at_rest(), body.offer(body.at_rest(), 1e-3), pressure)
+    offer = body.offer(body.at_rest(), 1e-3)
+    found, _ = body.after(body.at_rest(), offer, pressure)
     alone = stacked(operator, (BodySide(operator, Relaxation(1.0), operator.trace),), (1.0,))
+    met, known = offer.surface.displaced(operator.weights), alone.displaced(operator.weights)
+    np.testing.assert_allclose(met, known, rtol=1e-9)
     np.testing.assert_allclose(body.displacement(found), alone.displaced(operator.weights * pressure), rtol=1e-9)
 
 
