@@ -217,7 +217,7 @@ class FrameTrial:
             elif not math.isfinite(slope):
                 slope = float(trial.rate[event.gap, -1])
             low, high = (low, length) if at <= 0.0 else (length, high)
-            following = length - at / slope if slope < 0.0 else low
+            following = length - at / slope if slope < 0.0 else math.nan  # a value that rises leads nowhere: halved
             if at == 0.0 or abs(following - length) <= self._precise or high - low <= self._precise:
                 return trial
             previous, length = (length, at), following if low < following < high else 0.5 * (low + high)
