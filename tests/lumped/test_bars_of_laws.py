@@ -613,3 +613,21 @@ def test_two_forces_that_are_none_differ_by_nothing() -> None:
     """Of a striker that its end time stops before anything presses."""
     nothing = np.zeros(4)
     assert _largest_and_norm(np.arange(4.0), nothing, nothing) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("ratio", [0.5, 1e-2, 1e-4, 1e-6])
+def test_the_time_of_a_flat_peak_is_known_as_far_as_rounding_lets_it(ratio: float) -> None:
+    """A loop that goes on yielding until it turns, its force then as flat as its second stiffness is small."""
+    k1, mass, velocity = 1557.35, 10287.2, 0.132921
+    k2, fast = ratio * k1, math.sqrt(k1 / mass)
+    for share in (0.05, 0.18, 0.5):
+        depth = share * velocity / fast
+        slow, begun = math.sqrt(k2 / mass), math.asin(share)
+        left = velocity * math.cos(begun)
+        exact = begun / fast + math.atan(left * mass * slow / (k1 * depth)) / slow
+        law = LawChoice("impact_bilinear", {"k1": k1, "k2": k2, "yield_depth": depth})
+        scene = Scene(None, mass, velocity, law=law, motion=Motion(end_time=1e9))
+        for tolerance in (1e-4, 1e-6, 1e-8):
+            found = simulate(laws.get("impact_bilinear").of(scene), scene, tolerance).quantities["peak_time"]
+            assert found.error is not None
+            assert abs((found.value or 0.0) - exact) <= found.error < 0.1 * exact

@@ -55,7 +55,7 @@ def half_widths(track: PointTrack, bodies: Bodies, exit_rule: str, outcome: Outc
     rest = AT_REST if one.end is End.REST else 0.0
     rounding, of_force = ROUNDING + rest, ROUNDING_OF_FORCE + rest
     highest = max(float(np.abs(part.force).max()) for part in found)
-    peak, peak_time = _peak(found, outcome.peak_time)
+    peak, peak_time, reach = _peak(found, outcome.peak_time)
     duration, rate = _end(track, bodies, exit_rule, found[-1])
     fastest = max(bodies.velocity, *(float(np.abs(part.rate).max()) for part in found))
     restitution = (rate + rounding * fastest) / bodies.velocity
@@ -64,7 +64,7 @@ def half_widths(track: PointTrack, bodies: Bodies, exit_rule: str, outcome: Outc
         force=SAFETY * max(float(np.abs(part.lacking_force).max()) for part in found) + of_force * highest,
         history_l2=SAFETY * _l2(found) + of_force,
         peak_force=SAFETY * peak + of_force * outcome.peak_force,
-        peak_time=SAFETY * peak_time + ROUNDING_OF_PEAK * outcome.peak_time,
+        peak_time=SAFETY * peak_time + ROUNDING_OF_PEAK * max(outcome.peak_time, reach),
         peak_depth=SAFETY * _deepest(found) + rounding * one.deepest,
         duration=duration,
         restitution=restitution,
@@ -100,8 +100,12 @@ def _deepest(found: list[Deviation]) -> float:
     return abs(float(part.lacking_depth.flat[part.depth.argmax()]))
 
 
-def _peak(found: list[Deviation], time: float) -> tuple[float, float]:
-    """What the highest force lacks around `time`, N, and by how much its time errs there, s."""
+def _peak(found: list[Deviation], time: float) -> tuple[float, float, float]:
+    """What the highest force lacks around `time`, N, by how much its time errs there, s, and how far rounding reaches.
+
+    That is the time, s, of which ROUNDING_OF_PEAK is lost: of half a sine that of its peak; of a flatter peak longer,
+    as it is less curved. What is lost is no longer than the whole contact.
+    """
     part = next((part for part in found if time <= part.times[-1, -1]), found[-1])
     i = int(np.searchsorted(part.times[:-1, -1], time))
     lacking, pace = part.lacking_force[i], part.weights[i] / NODES.weights
@@ -114,7 +118,10 @@ def _peak(found: list[Deviation], time: float) -> tuple[float, float]:
     bent = _slopes() @ (_slopes() @ part.force[i] / pace) / pace
     curvature = abs(float(bent[np.abs(part.times[i] - time).argmin()]))
     whole = float(found[-1].times[-1, -1])
-    return height, min(float(tilt) / curvature, whole) if curvature else whole
+    if not curvature:
+        return height, whole, time
+    flat = float(part.force[i].max()) / curvature * (0.5 * np.pi) ** 2 / time if time else 0.0
+    return height, min(float(tilt) / curvature, whole), min(flat, whole / ROUNDING_OF_PEAK)
 
 
 def _l2(found: list[Deviation]) -> float:
