@@ -370,15 +370,15 @@ class Contrast(NamedTuple, Generic[Told]):
 class Varied(NamedTuple, Generic[Told]):
     """What runs with different settings tell.
 
-    With half of the settings' steps on three meshes: ``base`` on the finest, ``middle``, ``coarse``. On the coarsest
-    also with all steps, ``same``, with twice as many, ``finer``, with half the penalty, ``softer``, and cut half as far
-    away, ``nearer``.
+    With all steps on three meshes: ``base`` on the finest, ``middle``, ``coarse``. On the coarsest also with half the
+    steps, ``fewer``, with twice as many, ``finer``; with half of them and half the penalty, ``softer``, or cut half as
+    far away, ``nearer``.
     """
 
     base: Told
     middle: Told
     coarse: Told
-    same: Told
+    fewer: Told
     finer: Told
     softer: Told
     nearer: Told
@@ -386,17 +386,17 @@ class Varied(NamedTuple, Generic[Told]):
     @classmethod
     def of(cls, run: Callable[[Numerics, bool], Told], numerics: Numerics, coarsest: float) -> Varied[Told]:
         """Of a ``run`` with settings, on a mesh that is cut or not; ``coarsest``: elements along its contact radius."""
-        few = numerics.varied(steps=max(numerics.steps // 2, FEWEST_STEPS))
-        middle = few.varied(elements_per_contact=math.sqrt(coarsest * few.elements_per_contact))
-        coarse = few.varied(elements_per_contact=coarsest)
+        middle = numerics.varied(elements_per_contact=math.sqrt(coarsest * numerics.elements_per_contact))
+        coarse = numerics.varied(elements_per_contact=coarsest)
+        few = coarse.varied(steps=max(numerics.steps // 2, FEWEST_STEPS))
         return cls(
-            base=run(few, False),
+            base=run(numerics, False),
             middle=run(middle, False),
             coarse=run(coarse, False),
-            same=run(coarse.varied(steps=numerics.steps), False),
+            fewer=run(few, False),
             finer=run(coarse.varied(steps=2 * numerics.steps), False),
-            softer=run(coarse.varied(penalty=0.5 * coarse.penalty), False),
-            nearer=run(coarse, True),
+            softer=run(few.varied(penalty=0.5 * few.penalty), False),
+            nearer=run(few, True),
         )
 
     def mended(self, onwards: Callable[[Told, Told, Told, float], Told]) -> Told:
@@ -407,7 +407,7 @@ class Varied(NamedTuple, Generic[Told]):
         return onwards(self.base, self._fine(onwards), self.coarse, 1.0)
 
     def _fine(self, onwards: Callable[[Told, Told, Told, float], Told]) -> Told:
-        return onwards(self.finer, self.finer, self.same, ONWARDS)
+        return onwards(self.finer, self.finer, self.coarse, ONWARDS)
 
     def pairs(
         self, onwards: Callable[[Told, Told, Told, float], Told], settling: float
@@ -417,11 +417,11 @@ class Varied(NamedTuple, Generic[Told]):
         From mesh to mesh errors fall by ``settling``: the mean of what two pairs tell of the finest, for two meshes may
         agree by chance; of what is left of the steps once their square counts out, order one is trusted.
         """
-        fewer = onwards(self.same, self.same, self.coarse, ONWARDS)
+        few = onwards(self.coarse, self.coarse, self.fewer, ONWARDS)
         half = 0.5 * SAFETY / (settling - 1.0)
         return {
             "mesh": (Contrast(self.base, self.middle, half), Contrast(self.middle, self.coarse, half / settling)),
-            "penalty": (Contrast(self.coarse, self.softer, SAFETY),),
-            "time_step": (Contrast(self._fine(onwards), fewer, SAFETY),),
-            "far_field": (Contrast(self.coarse, self.nearer, SAFETY / 3.0),),
+            "penalty": (Contrast(self.fewer, self.softer, SAFETY),),
+            "time_step": (Contrast(self._fine(onwards), few, SAFETY),),
+            "far_field": (Contrast(self.fewer, self.nearer, SAFETY / 3.0),),
         }
