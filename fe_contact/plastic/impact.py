@@ -48,12 +48,12 @@ from lumped.result.result import IndentationLeft, LedgerEntry, Result, meets
 from lumped.scene.scene import Scene
 
 # Processor time, s, of an impact at so loose a tolerance, about, and the power that it follows a tighter one with.
-SECONDS, SO_LOOSE, TIGHTER = 12.0, 5e-3, 0.7
+SECONDS, SO_LOOSE, TIGHTER = 15.0, 5e-3, 1.4
 ROWS = 400  # of each half of an impact: the line between two errs by 1e-5 of the force
 GRID = 500  # depths at which a loading is told
 SPRUNG = np.linspace(0.0, 1.0, 101)  # shares of what springs back, from parting on
 DEGREE = 5  # of the polynomial through the forces of a release, to the power that makes them a line
-RELEASES = 16  # steps of a release: it errs by where edges cross elements, alike whatever the steps of the loading were
+RELEASES, RELEASING = 12, 0.125  # steps of a release at least, and over those of a loading: edges cross elements
 # Of the run that tells how deep an impact will go: a soft penalty settles soon where a body flows from the touch on.
 PILOT: Given = {"elements_per_contact": 2.0, "steps": 16, "penalty": 4000.0}
 PILOT_FIRST = 0.01  # of its depth, its first step: the work up to there is 1e-4 of the whole
@@ -242,7 +242,7 @@ def let_go(loading: PlasticLoading, deepest: float, power: float) -> list[Statio
     last = [place.depth < depth * (1.0 - 1e-6) for place in loading.ends].index(False) - 1
     before, here = loading.ends[max(last - 1, 0)], loading.ends[last]
     taken = list(presser.loaded(before, here, depth))
-    return presser.released(taken[-1], RELEASES, power)
+    return presser.released(taken[-1], max(RELEASES, round(RELEASING * loading.numerics.steps)), power)
 
 
 def answered(loading: PlasticLoading, known: Answered, places: list[Station], power: float) -> Answered:

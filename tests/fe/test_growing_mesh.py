@@ -143,9 +143,12 @@ def test_a_displacement_is_told_on_a_larger_mesh() -> None:
 class Staying(Presser):
     """On a mesh that is one unit long from the first step on."""
 
-    def _stage(self, state: State, before: Station, here: Station, depth: float, guess: tuple[float, float]) -> Station:
-        share, spread = guess
-        start = here.displacement + share * (here.displacement - before.displacement)
+    def _stage(
+        self, state: State, like: tuple[Station, Station], here: Station, depth: float, spread: float
+    ) -> Station:
+        first, last = like
+        share = (depth - here.depth) / (last.depth - first.depth) if last is not first else 0.0
+        start = here.displacement + share * (last.displacement - first.displacement)
         return self.settled(state, depth, start, here.pressure, here.radius * (depth / here.depth) ** spread, 1.0)
 
     def first(self, depth: float, radius: float) -> Station:
