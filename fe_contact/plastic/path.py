@@ -170,12 +170,12 @@ class Presser:
     def _stepped(self, before: Station, here: Station, depth: float) -> Station:
         """Two stages. Raises EquilibriumLost."""
         stage, spread = here.depth + GAMMA * (depth - here.depth), self._spread_of(before, here)
-        first, second = ((before, here.middle), (here.middle, here)) if here.middle else ((before, here), None)
-        middle = self._stage(here.state, first, here, stage, spread)
+        middle = self._stage(here.state, (before, here.middle or here), here, stage, spread)
         on = (1.0 - GAMMA) / GAMMA
         began = self.ground.carried(here.state, middle.scale / here.scale)
         state = tuple(start + on * (flowed - start) for start, flowed in zip(began, middle.state, strict=True))
-        there = self._stage(state, second or (here, middle), middle, depth, spread)
+        like = (here.middle, here) if here.middle else (here, middle)
+        there = self._stage(state, like, middle, depth, spread)
         return self._worked(here, there._replace(middle=middle))
 
     def _worked(self, here: Station, there: Station) -> Station:
@@ -195,8 +195,8 @@ class Presser:
     def _stage(
         self, state: State, like: tuple[Station, Station], here: Station, depth: float, spread: float
     ) -> Station:
-        """From ``here`` to a depth after ``state``; guessed: it goes on as between two stations that are ``like`` it,
-        for a first stage those of the one before; the contact radius as a power of the depth.
+        """From ``here`` to a depth after ``state``; guessed: it goes on as between the two ends of a stage ``like`` it,
+        the same one of the step before where that is known; the contact radius as a power of the depth.
         """
         first, last = like
         share = (depth - here.depth) / (last.depth - first.depth) if last is not first else 0.0

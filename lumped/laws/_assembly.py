@@ -54,7 +54,7 @@ class Answer:
 
     `columns` tells it at any time, `times` are its own rows; `values` are the quantities (None where undefined),
     without history_l2. `until`: the last time to follow, s; None: the scene's. `contacts`: the several contacts of one
-    motion. `mass`: what moves, kg, by which the impulse goes with the velocity.
+    motion. `mass`: what moves, kg, by which the impulse goes with the velocity; 0 where waves carry some of it.
     """
 
     times: Array

@@ -3,8 +3,9 @@
 Doi 10.1115/1.3423596. Of e, chi is the exact one unless `damping` names a published formula. At a given chi the
 restitution falls with the velocity: the damping is d = chi v_0, v_0 the velocity at touch.
 
-Hertzdamp, F = k depth^n (1 + xi rate/v_0), is the same law with xi = d. The force is zero at depth zero and
-nowhere else: both exits are one. v dv/((1 + chi v) depth^n) is exact, whence for every exponent n
+Hertzdamp, F = k depth^n (1 + xi rate/v_0), is the same law with xi = d. The force is zero at depth zero and, unless
+something else drives the bodies apart, nowhere else: both exits are one then. v dv/((1 + chi v) depth^n) is exact,
+whence for every exponent n
     ln((1+d)/(1-e d)) = d (1+e).
 With 2s for either side, 1+d = s exp(s)/sinh(s) and 1 - e d = s exp(-s)/sinh(s): in the Langevin function
 L(s) = coth(s) - 1/s the law reads d = s (1 + L), e = (1 - L)/(1 + L), where no digit is lost at either end.

@@ -3,7 +3,8 @@
 Eng. Struct. 62-63, 33-41 (2014), in the form of section 2.5 of the source paper: damping proportional to a power of
 the depth, for any exponent, and exact for the restitution asked for. It is the law of Hunt and Crossley, its damper
 with a constant c = chi k of its own.
-The exact relation does not depend on alpha: it is that of Hunt and Crossley with d = c v_0/k. Both exits are one.
+The exact relation does not depend on alpha: it is that of Hunt and Crossley with d = c v_0/k. As there, both
+exits are one unless something else drives the bodies apart.
 """
 
 from __future__ import annotations

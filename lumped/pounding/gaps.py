@@ -154,8 +154,8 @@ def events_of(gap: int, state: GapState, law: ForceLaw, depth: float, noise: flo
     def value(step: FrameStep) -> Array:
         return force_left(step.depth[gap], step.force[gap]) if by_force else step.depth[gap]
 
-    rate = law.letting_go(state.stage) * (1.0 + PULLED)
     if not state.stage.approaching:
+        rate = law.letting_go(state.stage) * (1.0 + PULLED)
         found.append(GapEvent(gap, Happening.EXIT, value, surfaces=not by_force))
         if law.exit == "force" and rate > -math.inf:
             found.append(GapEvent(gap, Happening.EXIT, lambda step: step.rate[gap] - rate))
