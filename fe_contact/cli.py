@@ -21,15 +21,18 @@ import tempfile
 import textwrap
 import threading
 import traceback
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from functools import partial
 from pathlib import Path
 from types import FrameType
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 from fe_contact.progress import clear
 from fe_contact.threads import one_thread
+
+if TYPE_CHECKING:
+    from fe_contact.commands.base import Command
 
 DESCRIPTION = (
     "Impact of bodies on viscoelastic targets: finite elements with error bars, beside lumped pounding models."
@@ -98,10 +101,22 @@ def parser() -> OneLine:
     """The parser of all commands."""
     from fe_contact.commands import COMMANDS
 
-    top = OneLine(prog="fe-contact", description=DESCRIPTION, epilog=_overview(), formatter_class=Overview)
+    return _parser_of(COMMANDS.members, _overview())
+
+
+def _parser_for(arguments: Sequence[str]) -> OneLine:
+    """The parser of the command that stands first, the others not loaded; of all, where none does."""
+    from fe_contact.commands import COMMANDS
+
+    first = arguments[0] if arguments else ""
+    return _parser_of({first: COMMANDS.get(first)}) if first in COMMANDS.names else parser()
+
+
+def _parser_of(members: Mapping[str, Command], epilog: str = "") -> OneLine:
+    top = OneLine(prog="fe-contact", description=DESCRIPTION, epilog=epilog, formatter_class=Overview)
     top.add_argument("--version", action=Versions, nargs=0, help="versions of this suite and what it computes with")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", help="one of those below")
-    for name, command in COMMANDS.members.items():
+    for name, command in members.items():
         command.fill(commands.add_parser(name, help=command.summary.replace("%", "%%")))
     return top
 
@@ -132,7 +147,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _said(f"out of memory; cure: a limit of {LEAST_MEMORY // 1024} kB or more (ulimit -v)", NOT_REACHED)
     from fe_contact.commands import COMMANDS
 
-    args = parser().parse_args(arguments)
+    args = _parser_for(sys.argv[1:] if arguments is None else arguments).parse_args(arguments)
     try:
         with _interruptible(), one_thread, _disk(args):
             code = COMMANDS.get(args.command).execute(args)

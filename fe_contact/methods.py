@@ -9,18 +9,20 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass, replace
+from typing import TYPE_CHECKING
 
 from fe_contact.errors import faults_of
 from fe_contact.progress import Count, Progress, silent
 from fe_contact.settings import Given, checked, tolerance_of
 from lumped import laws
 from lumped.errors import BadInput, Fault, FeContactError, nearest, shown
-from lumped.laws.base import simulation as by_law
 from lumped.progress import counting_steps
 from lumped.result.result import Result, largest_bar, unmet
 from lumped.scene.scene import Scene
 from lumped.schema import Table
-from lumped.solvers.hereditary.pieces import Followed, alone
+
+if TYPE_CHECKING:
+    from lumped.solvers.hereditary.pieces import Followed
 
 FE = "fe"
 OWN = (FE, "cheapest")
@@ -86,6 +88,8 @@ def simulation(scene: Scene, method: str, table: Given, tolerance: float | None 
 
 def _lumped(scene: Scene, name: str, given: Given, progress: Progress) -> Result:
     """By a lumped law, with its steps counted. Raises BadInput for an unknown name."""
+    from lumped.solvers.hereditary.pieces import alone  # late: finite elements need no law
+
     with counting_steps(Count.of(progress, f"time steps of {name}", 0.0)):
         return alone(_by_law(scene, name, given))
 
@@ -94,6 +98,8 @@ def _by_law(scene: Scene, name: str, given: Given, dense: bool = True) -> Follow
     """By a lumped law. Raises BadInput for an unknown name."""
     if reason := refusal(name):
         raise BadInput(Fault("--method", "", reason))
+    from lumped.laws.base import simulation as by_law
+
     found = yield from by_law(laws.get(name).of(scene), scene, tolerance_of(given), dense)
     if scene.has_geometry:
         widest = float(found.history.contact_radius.max(initial=0.0))

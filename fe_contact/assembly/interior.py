@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-import scipy.sparse.linalg as linalg
 
 from fe_contact.assembly.forms import Array, Basis, Indices, Matrix
 
@@ -66,6 +65,8 @@ def elimination_order(matrix: Matrix) -> Indices:
 
 
 def _factors(matrix: Matrix, order: Literal["NATURAL", "MMD_AT_PLUS_A"]) -> Any:
+    import scipy.sparse.linalg as linalg  # late: a body known from disk needs none
+
     if FACTORS * matrix.nnz + WORK_SPACE > _room():
         raise MemoryError
     return linalg.splu(

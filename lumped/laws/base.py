@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, Protocol
+from typing import TYPE_CHECKING, ClassVar, Protocol
 
 from lumped.errors import BadInput, Fault
-from lumped.laws._damping import Family
-from lumped.laws._hereditary import HereditaryLaw
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.schema.keys import Key, Sets
-from lumped.solvers.hereditary.pieces import Followed, alone
 from lumped.targets import HalfSpace
+
+if TYPE_CHECKING:  # most scenes are solved by one law, which loads what it needs
+    from lumped.laws._damping import Family
+    from lumped.solvers.hereditary.pieces import Followed
 
 
 class Law(Protocol):
@@ -79,6 +80,8 @@ def simulate(model: Law, scene: Scene, tolerance: float = 1e-6) -> Result:
         with concurrent.futures.ProcessPoolExecutor() as pool:
             found = list(pool.map(restitution, numpy.linspace(0.1, 2.0, 10_000), chunksize=100))
     """
+    from lumped.solvers.hereditary.pieces import alone
+
     return alone(simulation(model, scene, tolerance))
 
 
@@ -87,6 +90,8 @@ def simulation(model: Law, scene: Scene, tolerance: float, dense: bool = True) -
 
     Not `dense`: such a law's history has the rows of its integration alone, for quantities are all that is asked.
     """
+    from lumped.laws._hereditary import HereditaryLaw
+
     if model.needs_mass:
         check_mass(scene)
     with scene.addressed():

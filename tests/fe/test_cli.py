@@ -198,6 +198,17 @@ def test_a_misspelt_word_leads_to_the_one_it_resembles(
     assert capsys.readouterr().err == f"{said}\n"
 
 
+def test_a_command_loads_no_other_one(tmp_path: Path) -> None:
+    """Thirty of them, and all their words, would cost more than a law does."""
+    code = (
+        "import sys; from fe_contact.cli import main; main(sys.argv[1:]);"
+        "print(*(name for name in sys.modules if name.startswith('fe_contact.commands.')))"
+    )
+    words = ["run", "steel-ball-sls", "--method", "hertz", "--out", str(tmp_path), "--quiet"]
+    done = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=True)
+    assert set(done.stdout.splitlines()[-1].split()) == {"fe_contact.commands.base", "fe_contact.commands.run"}
+
+
 def test_an_unknown_method_names_the_nearest(empty: Path, scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert exit_code("run", str(scene), "--method", "mrd") == 2
     assert "did you mean mdr" in capsys.readouterr().err
