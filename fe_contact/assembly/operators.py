@@ -198,13 +198,15 @@ def _influence(
     work of a stiffness, (loaded, loaded).
     """
     seen = -normal.T if watch is None else sparse.vstack([-normal.T, watch])
-    parts, answers = list[Array](), list[Array]()
-    for part in np.array_split(np.eye(loaded), -(-loaded // SOLVED_AT_ONCE), axis=1):
-        moved = displacement(part)
-        answers.append(seen @ moved)
-        parts += [moved] if worked is not None else []
-    known, surface = np.hstack(answers), normal.shape[1]
-    work = np.hstack(parts).T @ np.hstack([worked @ part for part in parts]) if parts else None
+    known, surface = np.empty((seen.shape[0], loaded)), normal.shape[1]
+    whole = None if worked is None else np.empty((normal.shape[0], loaded))  # large: made once, not of its parts
+    forces = np.eye(loaded)
+    for some in np.array_split(np.arange(loaded), -(-loaded // SOLVED_AT_ONCE)):
+        moved = displacement(forces[:, some])
+        known[:, some] = seen @ moved
+        if whole is not None:
+            whole[:, some] = moved
+    work = None if whole is None else whole.T @ (worked @ whole)
     return known[:surface], None if watch is None else known[surface], work
 
 
