@@ -30,7 +30,7 @@ def faults_of(scene: Scene | Indenter) -> Iterator[None]:
 
 def _lengths(scene: Scene | Indenter) -> str:
     """The keys of the body that is meshed; and the option that says how far it is pressed."""
-    part, body = ("target", scene.target) if scene.target.deformable else ("striker", scene.shape)
+    part, body = scene.target.owner, scene.target if scene.target.deformable else scene.shape
     numbers = (
         () if body is None else [name for name, key in keys_of(type(body)).items() if isinstance(key.kind, Number)]
     )

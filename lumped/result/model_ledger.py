@@ -290,7 +290,7 @@ def sideways(scene: Scene, peak: Peak) -> LedgerEntry:
     bulk modulus has chosen.
     """
     effect, material = "constant nu against constant bulk modulus", scene.geometry.material
-    treated, solid = "constant nu", "target" if scene.target.deformable else "striker"
+    treated = "constant nu"
     if material.constant == "bulk":
         return LedgerEntry(effect, "constant bulk modulus", 0.0, "as the scene says")
     if material.young.is_elastic or math.isinf(material.bulk):
@@ -307,7 +307,7 @@ def sideways(scene: Scene, peak: Peak) -> LedgerEntry:
     except FeContactError:  # no load curve, or one that ends before this depth
         return LedgerEntry(effect, treated, None, "no load curve tells it; run both of target.material.constant")
     refused = _no_bulk(scene)
-    note, key = "both, by a power of the depth", "" if refused else f"{solid}.material.constant"
+    note, key = "both, by a power of the depth", "" if refused else f"{scene.target.owner}.material.constant"
     said = f"{note}; {refused}" if refused else note
     return LedgerEntry(effect, treated, abs(forces[0] / forces[1] - 1.0), said, key, value=None if refused else "bulk")
 
@@ -398,7 +398,7 @@ def plasticity(scene: Scene | Indenter, model: Model, peak: Peak, share: float =
     if model.plasticity:
         return LedgerEntry(effect, "included", 0.0)
     if material.yield_strength is None:
-        return LedgerEntry(effect, "neglected", None, "needs target.material.yield_strength")
+        return LedgerEntry(effect, "neglected", None, f"needs {scene.target.owner}.material.yield_strength")
     if peak.contact_radius == 0.0:
         return LedgerEntry(effect, "neglected", 0.0)
     pressure = 1.5 * peak.force / (math.pi * peak.contact_radius**2)
@@ -416,7 +416,7 @@ def adhesion(scene: Scene, peak: Peak) -> LedgerEntry:
     """The pull-off force (3/2) pi w R of Johnson, Kendall and Roberts 1971, doi 10.1098/rspa.1971.0141."""
     work = scene.geometry.material.work_of_adhesion
     if work is None:
-        return LedgerEntry("adhesion", "neglected", None, "needs target.material.work_of_adhesion")
+        return LedgerEntry("adhesion", "neglected", None, f"needs {scene.target.owner}.material.work_of_adhesion")
     radius = scene.geometry.shape.tip_radius
     if radius is None:
         return LedgerEntry("adhesion", "neglected", None, "the pull-off force is known for a round tip only")

@@ -81,8 +81,8 @@ class Geometry:
 
     def places(self, deep: str) -> dict[str, str]:
         """Where in a scene file stands what a part refuses; `deep`: what a depth comes from."""
-        yielding = "target" if self.target.deformable else "striker"
-        own = {"material": f"{yielding}.material", "relaxation": f"{yielding}.material", "numerics": "numerics"}
+        material = f"{self.target.owner}.material"
+        own = {"material": material, "relaxation": material, "numerics": "numerics"}
         return {**own, "depth": deep, self.target.name: "target", self.shape.name: "striker"}
 
     def tables(self) -> tuple[Table, Table]:
@@ -194,7 +194,6 @@ def finite_faults(source: str, model: Model, geometry: Geometry, impacts: int | 
     shape, target, material = geometry.shape, geometry.target, geometry.material
     instead = target.strained_instead(shape)
     relaxing, state = impacts is not None and not material.young.is_elastic, "with large strains in this version"
-    part = "target" if target.deformable else "striker"
     wrong = [
         (
             bool(instead),
@@ -206,17 +205,17 @@ def finite_faults(source: str, model: Model, geometry: Geometry, impacts: int | 
         (model.plasticity, "model.plasticity", f"true: nothing yields {state}; accepted: false"),
         (
             relaxing and material.young.viscosity > 0.0,
-            f"{part}.material.law",
+            f"{target.owner}.material.law",
             f"no dashpot in parallel {state}; accepted: elastic, maxwell, sls, prony",
         ),
         (
             relaxing and material.constant == "bulk" and target.endless,
-            f"{part}.material.constant",
+            f"{target.owner}.material.constant",
             f'"bulk": in a {target.name} the whole stress relaxes {state}; accepted: "poisson"',
         ),
         (
             relaxing and material.constant == "bulk" and not energy_of(material.hyperelastic).splits,
-            f"{part}.material.hyperelastic",
+            f"{target.owner}.material.hyperelastic",
             f"{material.hyperelastic or DEFAULT}: its volume does not stand apart and relaxes with all else; "
             f'accepted: {", ".join(_split())}, or constant = "poisson"',
         ),

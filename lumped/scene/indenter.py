@@ -108,8 +108,7 @@ class Indenter:
         return {"name": self.name, "striker": striker, "target": target, "model": vars(self.model).copy()}
 
     def _refused(self, reason: str) -> BadInput:
-        where = "target" if self.target.deformable else "striker"
-        return BadInput(Fault(self.source, f"{where}.material", reason))
+        return BadInput(Fault(self.source, f"{self.target.owner}.material", reason))
 
 
 def _accepted(depth: float) -> bool:

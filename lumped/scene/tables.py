@@ -122,8 +122,7 @@ def inertia_faults(source: str, inertia: bool, density: float | None, target: Ta
         faults.append(Fault(source, "model.inertia", reason))
     if target is not None and density is None:
         reason = "missing; model.inertia = true needs it, in kg/m3; the equivalent E* of two bodies is no wave medium"
-        owner = "target" if target.deformable else "striker"
-        faults.append(Fault(source, f"{owner}.material.density", reason))
+        faults.append(Fault(source, f"{target.owner}.material.density", reason))
     return faults
 
 
@@ -423,8 +422,7 @@ class SceneReader(TableReader):
 
     def inertia(self, model: Model, target: Target | None) -> None:
         """Whether the target can have the inertia asked for, and a density for it."""
-        part = "striker" if target is not None and not target.deformable else "target"
-        material = self.table(part, required=False, quiet=True).get("material")
+        material = self.table("target" if target is None else target.owner, required=False, quiet=True).get("material")
         density = material.get("density") if isinstance(material, Mapping) else None
         self.faults += inertia_faults(self.source, model.inertia, density, target)
 

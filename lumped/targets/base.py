@@ -21,7 +21,6 @@ from lumped.shapes._block import Block
 from lumped.shapes.base import Shape
 from lumped.targets._strains import Pressed, StrainField
 
-NEEDS_DENSITY = "needs target.material.density"
 NO_SPEED = "a dashpot alone has no wave speed"
 MOVES = "{:.2g} of the striker's mass moves with it"
 LOST_FORCE = 0.3  # of the peak, relatively, over the share of the energy that is lost
@@ -60,6 +59,16 @@ class Target(Record, ABC):
     lead: ClassVar[float] = 1.0  # how much an overlap at the first touch grows per depth
     strikers: ClassVar[tuple[str, ...]] = ()  # names of the only shapes that strike it, where it is for few
     called: ClassVar[str] = ""  # in words, where its name is none
+
+    @property
+    def owner(self) -> str:
+        """The table of a scene file whose material is pressed: of a rigid target the striker's."""
+        return "target" if self.deformable else "striker"
+
+    @property
+    def needs_density(self) -> str:
+        """A note of the model ledger."""
+        return f"needs {self.owner}.material.density"
 
     @property
     def has_length(self) -> bool:
@@ -128,7 +137,7 @@ class Target(Record, ABC):
         share = radiated_share(material, pulse, shape.total if shape.plane else None)
         if share is not None:
             return min(LOST_FORCE * share, 1.0), f"radiates {min(share, 1.0):.2g} of the kinetic energy"
-        return None, NEEDS_DENSITY if material.density is None else NO_SPEED
+        return None, self.needs_density if material.density is None else NO_SPEED
 
     def ends(self, shape: Shape, nu: float, contact_radius: float) -> FreeEnd | None:
         """What an end of a body as long as a shape in plane strain gives way, under a contact this wide, m.
@@ -206,6 +215,6 @@ def vibrations(material: Material, pulse: Pulse, whole: float) -> tuple[float | 
     """
     stiffness = material.young.spring
     if material.density is None or not stiffness:
-        return None, NEEDS_DENSITY if material.density is None else NO_SPEED
+        return None, NO_SPEED
     share = math.sqrt(2.0 * pulse.energy / whole) / math.sqrt(stiffness / material.density)
     return min(share, 1.0), "order of magnitude: v/c, of the ball's own vibrations"

@@ -17,7 +17,7 @@ from lumped.schema.keys import Key, Part
 from lumped.shapes.base import SIZE, Shape
 from lumped.shapes.sphere import Sphere
 from lumped.targets._strains import Pressed
-from lumped.targets.base import MOVES, NEEDS_DENSITY, Target
+from lumped.targets.base import MOVES, Target
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class ORing(Target):
     def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
         """The section's middle moves half as fast as the striker, and its sides out as fast where the volume stays."""
         if material.density is None:
-            return None, NEEDS_DENSITY
+            return None, self.needs_density
         mass = material.density * 2.0 * math.pi**2 * self.mean_radius * self.section_radius**2
         added = 0.25 * (1.0 + (material.nu / (1.0 - material.nu)) ** 2) * mass / pulse.mass
         return min(added, 1.0), MOVES.format(added)

@@ -15,7 +15,7 @@ from lumped.shapes._block import Block
 from lumped.shapes.base import Shape
 from lumped.shapes.sphere import RoundShape
 from lumped.targets._strains import StrainField, alike
-from lumped.targets.base import NEEDS_DENSITY, Target, vibrations
+from lumped.targets.base import Target, vibrations
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Plane(Target):
         That is v sqrt(E A M/l), M its own mass, beside v sqrt(E A m/l) of the striker's m.
         """
         if material.density is None:
-            return None, NEEDS_DENSITY
+            return None, self.needs_density
         whole = shape.whole_mass(material.density)
         if whole is not None:
             return vibrations(material, pulse, whole)

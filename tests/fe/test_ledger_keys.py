@@ -44,6 +44,20 @@ def test_a_key_for_inertia_stands_where_it_works(name: str) -> None:
     assert bool(entry.key) is works
 
 
+NEEDED = {"density": HEAVY, "yield_strength": 1e9, "work_of_adhesion": 0.05}
+
+
+@pytest.mark.parametrize("name", [name for name in SCENES.names if Scene.load(name).has_geometry])
+def test_what_an_effect_needs_to_be_known_can_be_given(name: str) -> None:
+    """And is enough: the ledger does not ask for it again."""
+    asked = {one.effect: one.note for one in model_ledger(Scene.load(name), PEAK) if one.note.startswith("needs ")}
+    for effect, note in asked.items():
+        key = note.removeprefix("needs ")
+        more = Scene.load(name, {key: NEEDED[key.rpartition(".")[2]]})
+        (entry,) = [one for one in model_ledger(more, PEAK) if one.effect == effect]
+        assert "needs " not in entry.note
+
+
 @pytest.mark.parametrize("mass", [4.0e-3, 4.1888e-3])
 def test_a_ball_that_flies_has_the_mass_of_its_density_or_no_key(mass: float) -> None:
     """4/3 pi R^3 rho of a ball of 10 mm is 4.1888 g at 1000 kg/m3."""
