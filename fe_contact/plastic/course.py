@@ -2,7 +2,9 @@
 
 Where a contact ends beside its node changes from step to step, and with it the force, by 1e-4 where the body flows
 freely, and by 1e-3 under a rim: noise without a trend. So a force is a smooth function of the depth through those of
-all steps, some of which go deeper than asked; two meshes then differ by their trends, and a third of their noise.
+all steps, some of which go deeper than asked; two meshes then differ by their trends, and a third of their noise. Where
+the body begins to yield the force's curvature begins at once: before it the force is the elastic one but for a factor,
+and from there on it leaves that with its slope.
 """
 
 from __future__ import annotations
@@ -23,14 +25,19 @@ from fe_contact.plastic.path import ELASTIC_RATIO, PlasticZoneWide, Presser, Sta
 from fe_contact.progress import Count, Counted, Progress, uncounted
 from fe_contact.settings import DEFAULT_TOLERANCE, RANGES, Given, Numerics, tolerance_of
 from lumped.errors import BadInput, Fault
+from lumped.load_curves.base import LoadCurve
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.shapes import Shape
 
 Told = TypeVar("Told")
+Smooth = Callable[[Array], Array]
 BEYOND = 1.2  # of the largest depth: up to there forces are found, so that it lies amid them
-KNOTS = 1.0  # between knots of a smooth force, in ln depth: wider ones change it by 2e-4, narrower ones follow noise
+KNOTS = 0.5  # between knots of a smooth force, in ln depth: 1 misses it by 4e-4 after first yield, 1/4 follows noise
 RIM_KNOTS = 0.25  # the same under a rim, where no edge moves
+RADIUS_KNOTS = 1.0  # the same of a smooth contact radius, which jumps from point to point
+NARROWER = 0.5  # knots that tell what these ones miss
+SAMPLES = 2  # of a curve between two of its knots, about, at least
 FAINT, FIRM = 0.5, 0.9  # of the yield strength, mean elastic pressures: before them nothing yields, and hardly anything
 FEWEST = 6  # forces of a smooth curve at least
 STRIDE = 6.0  # over the settings' steps: of a step in depth, over the depth
@@ -93,27 +100,58 @@ def check_given(given: Given, source: str, profile: Shape) -> None:
 
 @dataclass(frozen=True, eq=False)
 class Forces:
-    """Forces (n,), N, and contact radii, m, at depths (n,), m, and the smooth curves through them."""
+    """Forces (n,), N, and contact radii, m, at depths (n,), m, and the smooth curves through them.
+
+    ``elastic``: how many of them lie before the body yields; ``curve``: its force up to there but for a factor.
+    """
 
     depth: Array
     force: Array
     radius: Array
     power: float
     knots: float
+    elastic: int
+    curve: LoadCurve
 
     @cached_property
-    def _logarithm(self) -> Callable[[Array], Array]:
-        return smooth(np.log(self.depth), np.log(self.force), self.knots)
+    def _logarithm(self) -> Smooth:
+        x, y = np.log(self.depth), np.log(self.force)
+        if self.elastic == 0:
+            return smooth(x, y, self.knots)
+        lost = y - np.log(self.curve.force(self.depth))
+        level = float(lost[: self.elastic].mean())
+
+        def before(x: Array) -> Array:
+            return np.asarray(level + np.log(self.curve.force(np.exp(x))))
+
+        if self.elastic == x.size:
+            return before
+        begins = _onset(x[self.elastic - 1 :], lost[self.elastic - 1 :] - level)
+        force, stiffness = self.curve.force_and_slope(math.exp(begins))
+        slope = float(stiffness) * math.exp(begins) / float(force)
+        yields = x > begins
+        beyond = x[yields] - begins
+        bends = smooth(beyond, y[yields] - before(np.array([begins])) - slope * beyond, self.knots, rising=True)
+
+        def of(x: Array) -> Array:
+            beyond = np.maximum(x - begins, 0.0)
+            return np.asarray(before(np.minimum(x, begins)) + slope * beyond + bends(beyond))
+
+        return of
 
     @cached_property
-    def _squared(self) -> Callable[[Array], Array]:
-        return smooth(np.log(self.depth), np.log(self.radius), self.knots)
+    def _squared(self) -> Smooth:
+        return smooth(np.log(self.depth), np.log(self.radius), RADIUS_KNOTS)
 
     def logarithm(self, depth: Array) -> Array:
         """Of the force at depths, m; before the first one it is a power of the depth."""
         inside = np.clip(depth, self.depth[0], self.depth[-1])
         before = np.minimum(np.log(np.maximum(depth, np.finfo(float).tiny) / self.depth[0]), 0.0)
         return np.asarray(self._logarithm(np.log(inside)) + self.power * before)
+
+    def misfit(self, depth: Array) -> Array:
+        """What narrower knots change of that: trends that these ones miss, and some noise."""
+        return replace(self, knots=NARROWER * self.knots).logarithm(depth) - self.logarithm(depth)
 
     def contact_radius(self, depth: Array) -> Array:
         """At depths, m; there in proportion to the root of force over depth."""
@@ -122,15 +160,38 @@ class Forces:
         return np.asarray(np.exp(self._squared(np.log(inside)) + (self.power - 1.0) * before))
 
 
-def smooth(x: Array, y: Array, spacing: float) -> Callable[[Array], Array]:
-    """The cubic spline nearest to samples (n,), its knots a ``spacing`` apart at least."""
-    from scipy.interpolate import make_lsq_spline  # late: only what yields needs it
+def _onset(x: Array, lost: Array) -> float:
+    """Between the first two of places x (n,), ascending, where a parabola through the next two ends: what is ``lost``
+    begins there.
+    """
+    if x.size < 3:
+        return float(x[0])
+    first, second = np.sqrt(np.maximum(-lost[1:3], 0.0))
+    back = first * (x[2] - x[1]) / (second - first) if second > first else np.inf
+    return float(max(x[1] - back, x[0]))
 
-    intervals = max(1, min(round((x[-1] - x[0]) / spacing), (x.size - 4) // 2))
-    inner = np.linspace(x[0], x[-1], intervals + 1)
-    knots = np.concatenate([np.full(3, x[0]), inner, np.full(3, x[-1])])
-    found: Callable[[Array], Array] = make_lsq_spline(x, y, knots, 3)
-    return found
+
+def smooth(x: Array, y: Array, spacing: float, rising: bool = False) -> Smooth:
+    """The cubic spline nearest to samples (n,), its knots a ``spacing`` apart, or further.
+
+    ``rising``: it begins at zero, with no slope, and is a polynomial of less degree where there are fewer samples.
+    """
+    from scipy.interpolate import BSpline  # late: only what yields needs it
+
+    held, start = (2, 0.0) if rising else (0, x[0])
+    degree = min(3, x.size + held - 1)
+    inner = _inner(np.append(start, x) if rising else x, spacing)
+    knots = np.concatenate([np.full(degree + 1, start), inner, np.full(degree + 1, x[-1])])
+    shapes = BSpline.design_matrix(x, knots, degree).toarray()[:, held:]
+    found = BSpline(knots, np.concatenate([np.zeros(held), np.linalg.lstsq(shapes, y, rcond=None)[0]]), degree)
+    return lambda x: np.asarray(found(x))
+
+
+def _inner(x: Array, spacing: float) -> Array:
+    """Knots between the first and the last of places x (n,), a spacing apart, or more where samples are sparse."""
+    passed = np.concatenate([[0.0], np.cumsum(np.minimum(np.diff(x) / spacing, 1.0 / SAMPLES))])
+    intervals = max(1, round(passed[-1]))
+    return np.asarray(np.interp(passed[-1] / intervals * np.arange(1, intervals), passed, x))
 
 
 @dataclass(frozen=True)
@@ -338,13 +399,17 @@ class PlasticLoading:
     def pressed(self) -> Forces:
         """The forces so far, from the first step on that reaches a point of the mesh."""
         course = self.course
-        depth, force, radius = columns([place for place in self.ends if place.force > 0.0])
+        places = [place for place in self.ends if place.force > 0.0]
+        depth, force, radius = columns(places)
+        yields = [bool(place.state[1].any()) for place in places]
         return Forces(
             depth=course.unit * depth,
             force=course.modulus * course.unit**2 * force,
             radius=course.unit * radius,
             power=course.power,
             knots=RIM_KNOTS if course.rim else KNOTS,
+            elastic=yields.index(True) if True in yields else len(yields),
+            curve=course.profile.load_curve,
         )
 
 

@@ -20,7 +20,7 @@ from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer
 from fe_contact.budget.solved import ImpactModel, record, solved
-from fe_contact.budget.variation import Variation
+from fe_contact.budget.variation import SAFETY, Variation
 from fe_contact.errors import MemoryTooSmall
 from fe_contact.march.impact import balanced
 from fe_contact.plastic.course import (
@@ -73,7 +73,7 @@ class HeldDown(NotReached):
 class Answered:
     """What a body answers: ln of the force, N, and contact radius, m, at depths (n,), m; of a release from the greatest
     depth the share of it that ``springs`` back, force^(1/power) and contact radius over their own there at ``SPRUNG``;
-    energy ``stored`` and ``plastic`` work in the end, J.
+    energy ``stored`` and ``plastic`` work in the end, J; ``misfit`` (n,): of the smooth logarithm.
     """
 
     depth: Array
@@ -84,13 +84,24 @@ class Answered:
     shrunk: Array
     stored: float
     plastic: float
+    misfit: Array
 
     @classmethod
     def of(cls, loading: PlasticLoading) -> Answered:
         """Of a loading; its release is not known yet."""
         course, pressed = loading.course, loading.pressed
         depth = np.geomspace(course.first, BEYOND * course.deepest, GRID)
-        return cls(depth, pressed.logarithm(depth), pressed.contact_radius(depth), 1.0, SPRUNG, SPRUNG, 0.0, 0.0)
+        return cls(
+            depth=depth,
+            logarithm=pressed.logarithm(depth),
+            radius=pressed.contact_radius(depth),
+            springs=1.0,
+            roots=SPRUNG,
+            shrunk=SPRUNG,
+            stored=0.0,
+            plastic=0.0,
+            misfit=pressed.misfit(depth),
+        )
 
 
 def _onwards(one: Answered, fine: Answered, coarse: Answered, weight: float) -> Answered:
@@ -108,6 +119,12 @@ def _onwards(one: Answered, fine: Answered, coarse: Answered, weight: float) -> 
         stored=float(of("stored")),
         plastic=float(of("plastic")),
     )
+
+
+def misfit(mended: Answered, told: Varied[Answered]) -> Contrast[Answered]:
+    """What ``mended`` may miss between the ends of its steps: all runs miss it alike, their mean with less noise."""
+    missed = np.mean([one.misfit for one in told], axis=0)
+    return Contrast(mended, replace(mended, logarithm=mended.logarithm + missed), SAFETY)
 
 
 @dataclass(frozen=True, eq=False)
@@ -351,13 +368,13 @@ class Striking:
         runner = Runner(self.scene, course, self.progress)
         runs = Varied.of(runner.run, numerics, self.course.coarsest(numerics))
         told, works = Varied(*(run.answered for run in runs)), [run.work for run in runs]
-        march = runner.motion(told.mended(_onwards)).march(runs.base.work)
+        mended = told.mended(_onwards)
+        march = runner.motion(mended).march(runs.base.work)
         curve = curve_of(march, self.scene)
         self._check_end(curve.duration)
-        changes = {
-            cause: tuple(runner.variation(pair) for pair in pairs)
-            for cause, pairs in told.pairs(_onwards, self.course.settling(numerics)).items()
-        }
+        pairs = told.pairs(_onwards, self.course.settling(numerics))
+        pairs["time_step"] += (misfit(mended, told),)
+        changes = {cause: tuple(runner.variation(pair) for pair in own) for cause, own in pairs.items()}
         work = TotalWork.of(works, runs.base.unknowns, sum(one.iterations for one in works), 0)
         return Budget(curve, march, changes, work, numerics)
 

@@ -11,8 +11,10 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.refine import Finer, refine
+from fe_contact.budget.variation import SAFETY
 from fe_contact.plastic.course import (
     BEYOND,
+    Contrast,
     Course,
     Forces,
     PlasticLoading,
@@ -95,14 +97,18 @@ class YieldingWay:
     def _forces(self, numerics: Numerics, course: Course) -> ForcesFound:
         depth = np.unique(np.concatenate([np.geomspace(self.asked.min(), self.asked.max(), DENSE), self.asked]))
         loadings = Varied.of(partial(self._run, course), numerics, self.course.coarsest(numerics))
-        told = Varied(*(loading.pressed.logarithm(depth) for loading in loadings))
+        pressed = [loading.pressed for loading in loadings]
+        told = Varied(*(one.logarithm(depth) for one in pressed))
+        missed = np.mean([one.misfit(depth) for one in pressed], axis=0)
+        pairs = told.pairs(_onwards, self.course.settling(numerics))
+        pairs["time_step"] += (Contrast(missed, np.zeros_like(missed), SAFETY),)
         return ForcesFound(
             depth=depth,
             logarithm=told.mended(_onwards),
-            pressed=loadings.base.pressed,
+            pressed=pressed[0],
             budget={
-                cause: around(depth, np.sum([one.factor * np.abs(one.first - one.second) for one in pairs], axis=0))
-                for cause, pairs in told.pairs(_onwards, self.course.settling(numerics)).items()
+                cause: around(depth, np.sum([one.factor * np.abs(one.first - one.second) for one in own], axis=0))
+                for cause, own in pairs.items()
             },
             numerics=numerics,
             work={

@@ -22,7 +22,7 @@ from fe_contact.assembly.forms import Array
 from fe_contact.errors import BodyTooFine, MemoryTooSmall
 from fe_contact.indentation import indent
 from fe_contact.plastic import ground
-from fe_contact.plastic.course import Course, PlasticLoading, Varied, _depth_of, settings, within_core
+from fe_contact.plastic.course import Course, PlasticLoading, Varied, _depth_of, settings, smooth, within_core
 from fe_contact.plastic.fields import STRESS, PressedAgain
 from fe_contact.plastic.impact import SPRUNG, Answered, HeldDown, Rebound, Runner, _at_most, _release, pilot, plan
 from fe_contact.plastic.indent import _onwards
@@ -147,7 +147,9 @@ def test_a_striker_on_a_spring_that_gives_back_a_share_of_its_depth_moves_as_kno
     deepest = (2.5 * energy / k) ** 0.4
     depth = deepest * np.geomspace(known, 1.2, 300)
     lost = (1.0 - share) * energy
-    given = Answered(depth, np.log(k * depth**1.5), np.sqrt(depth), share, SPRUNG, np.sqrt(SPRUNG), 0.0, lost)
+    given = Answered(
+        depth, np.log(k * depth**1.5), np.sqrt(depth), share, SPRUNG, np.sqrt(SPRUNG), 0.0, lost, 0.0 * depth
+    )
     rebound = Rebound(given, mass, energy, power, power)
     shallow = deepest * np.geomspace(1e-6, 1.0, 9)
     assert rebound.force(shallow) == pytest.approx(k * shallow**1.5, rel=1e-6)
@@ -173,7 +175,9 @@ def test_a_weight_goes_deeper_and_leaves_slower_or_is_held() -> None:
     """
     k, mass, velocity, share = 3e9, 0.2, 0.05, 1.0 / 3.0
     depth = np.geomspace(1e-8, 1e-3, 2000)
-    given = Answered(depth, np.log(k * depth**1.5), np.sqrt(depth), share, SPRUNG, np.sqrt(SPRUNG), 0.0, 0.0)
+    given = Answered(
+        depth, np.log(k * depth**1.5), np.sqrt(depth), share, SPRUNG, np.sqrt(SPRUNG), 0.0, 0.0, 0.0 * depth
+    )
     weight = 0.3 * k * (1.25 * mass * velocity**2 / k) ** 0.6
     found = Rebound(given, mass, 0.5 * mass * velocity**2, 1.5, 1.5, weight).march(Work())
 
@@ -418,11 +422,52 @@ def test_a_first_step_that_reaches_no_point_of_the_mesh_is_no_force() -> None:
     course, none = Course.of(indenter, 1e-5, 4e-5), np.zeros(1)
     depths, forces = np.geomspace(1e-3, 1.0, 9), np.geomspace(1e-6, 1e-2, 9)
     forces[0] = 0.0
-    places = [Station(float(d), none, (), float(f), none, float(d**0.5)) for d, f in zip(depths, forces, strict=True)]
+    flows = (none, np.ones(1))
+    places = [
+        Station(float(d), none, flows, float(f), none, float(d**0.5)) for d, f in zip(depths, forces, strict=True)
+    ]
     rest = Presser(course.ground(settings(COARSE, course)), 1.0, course.unit)
     found = PlasticLoading(course, settings(COARSE, course), rest, places).pressed
     assert found.depth == pytest.approx(course.unit * depths[1:])
     assert np.all(np.isfinite(found.logarithm(np.array([0.0, course.unit * depths[0], found.depth[3]]))))
+
+
+@pytest.mark.parametrize("steps", [20, 60])
+@pytest.mark.parametrize("begins", [0.75, 1.0, 3.0])
+def test_a_force_is_elastic_up_to_where_it_yields_and_bends_from_there_on(begins: float, steps: int) -> None:
+    """Where its loss begins as a square, and nothing yields at the last depth before; noise as of a mesh counts out."""
+    indenter, _ = SceneReader("scene", tables()).indenter(Indenter)
+    course, none = Course.of(indenter, 0.3 * yield_depth(0.3), 12.0 * yield_depth(0.3)), np.zeros(1)
+    depth, onset = course.depths(steps, course.deepest), begins * yield_depth(0.3)
+    elastic = indenter.profile.load_curve.force
+    noise = 1e-5 * np.random.default_rng([20261129, steps]).uniform(-1.0, 1.0, depth.size)
+
+    def loss(depth: Array) -> Array:
+        later = np.log(np.maximum(depth / onset, 1.0))
+        return np.asarray(np.log1p(0.047 * later**2) + 1e-3)
+
+    force = np.asarray(elastic(depth)) / course.unit**2 * np.exp(noise - loss(depth))
+    places = [
+        Station(d / course.unit, none, (none, np.array([float(d > onset)])), f, none, 1.0)
+        for d, f in zip(depth.tolist(), force.tolist(), strict=True)
+    ]
+    rest = Presser(course.ground(settings(COARSE, course)), 1.0, course.unit)
+    found = PlasticLoading(course, settings(COARSE, course), rest, places).pressed
+    asked = np.geomspace(depth[0], depth[-1], 300)
+    wrong = found.logarithm(asked) - np.log(course.modulus * np.asarray(elastic(asked))) + loss(asked)
+    assert np.abs(wrong[asked < onset]).max() < 1e-5
+    assert np.abs(wrong).max() < (6e-5 if steps == 60 else 2e-4)
+    assert np.abs(found.misfit(asked)).max() < 2e-4
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 6])
+def test_few_samples_make_a_smooth_curve_of_less_degree(count: int) -> None:
+    """From zero on with no slope: a power of its place that so many tell."""
+    place = np.linspace(0.2, 0.5, count) if count > 1 else np.array([0.4])
+    power = min(count + 1, 3)
+    found = smooth(place, place**power, 0.5, rising=True)
+    asked = np.linspace(0.0, place[-1], 9)
+    assert found(asked) == pytest.approx(asked**power, abs=1e-12)
 
 
 @pytest.mark.tenth
@@ -761,6 +806,37 @@ def test_a_change_that_vanishes_where_a_force_is_asked_for_errs_there_as_it_does
     assert wrong[[0, -1]].max() < 0.2 * wrong[1], "it vanishes there"
     shares = found.force_error / found.force
     assert np.all((wrong[1] < shares) & (shares < 3.0 * wrong[1]))
+
+
+def test_bars_hold_what_no_run_tells_between_its_knots(
+    known: Callable[..., None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A force that ripples faster than its smooth curve may: in all runs alike, slowly pressed and struck."""
+    wave = 1.1
+
+    class Rippled(Known):
+        def settled(self, state: Any, depth: float, *rest: Any) -> Station:
+            found = super().settled(state, depth, *rest)
+            return found._replace(force=found.force * math.exp(ripple(self.unit * depth)))
+
+    def ripple(depth: float) -> float:
+        return 0.01 * math.sin(2.0 * math.pi / wave * math.log(depth / yield_depth(0.3)))
+
+    known()
+    monkeypatch.setattr("fe_contact.plastic.course.Presser", Rippled)
+    depth, plain = np.geomspace(2.0, 9.0, 12) * yield_depth(0.3), 4.0 / 3.0 * modulus(0.3) * math.sqrt(RADIUS)
+    found = pressed(depth.tolist(), COARSE | {"steps": 80})
+    wrong = np.abs(np.log(found.force / (plain * depth**1.5)) - [ripple(one) for one in depth])
+    bars = found.force_error / found.force
+    assert wrong.max() > 5e-4
+    assert np.all(wrong < bars)
+    assert found.budget["time_step"].max() < 10.0 * wrong.max()
+    scene = Scene.from_dict(tables(mass=MASS, velocity=SLOW))
+    smoothly = fe_contact.run(scene, numerics={"tolerance": 1e-2, "steps": 80}).quantities["peak_force"]
+    monkeypatch.setattr("fe_contact.plastic.course.KNOTS", 0.1)
+    finely = fe_contact.run(scene, numerics={"tolerance": 1e-2, "steps": 160}).quantities["peak_force"]
+    missed = abs((smoothly.value or 0.0) - (finely.value or 0.0))
+    assert 2e-4 * (finely.value or 0.0) < missed < (smoothly.error or 0.0)
 
 
 def test_a_motion_that_ends_amid_the_contact_is_refused(known: Callable[..., None]) -> None:
