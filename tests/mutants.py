@@ -417,7 +417,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/plastic/course.py", "LEAST_STEPS", ""): BEGINS,
     ("fe_contact/plastic/course.py", "MOST_ELEMENTS, MOST_STEPS", ""): BEGINS,
     ("fe_contact/plastic/course.py", "STEPS, RIM_STEPS", ""): BEGINS,
-    ("fe_contact/plastic/course.py", "FOLLOWING", ""): BEGINS,
+    ("fe_contact/plastic/course.py", "FOLLOWING, STEPS_FOLLOWING, RIM_FOLLOWING", ""): BEGINS,
     ("fe_contact/plastic/course.py", "FURTHER, FURTHEST", ""): BEGINS,
     (
         "lumped/solvers/mdr/march.py",

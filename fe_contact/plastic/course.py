@@ -1,7 +1,7 @@
 """A loading of a half-space that yields, and its release: from a scene's bodies and settings to smooth curves.
 
-Where a contact ends beside its node changes from step to step, and with it the force, by 1e-4 where the body flows
-freely, and by 1e-3 under a rim: noise without a trend. So a force is a smooth function of the depth through those of
+As the body flows through its elements the force goes up and down, by 1e-4 to 5e-4 under a contact that grows, and from
+step to step by 1e-3 under a rim: noise without a trend. So a force is a smooth function of the depth through those of
 all steps, some of which go deeper than asked; two meshes then differ by their trends, and a third of their noise. Where
 the body begins to yield the force's curvature begins at once: before it the force is the elastic one but for a factor,
 and from there on it leaves that with its slope.
@@ -33,7 +33,7 @@ from lumped.shapes import Shape
 Told = TypeVar("Told")
 Smooth = Callable[[Array], Array]
 BEYOND = 1.2  # of the largest depth: up to there forces are found, so that it lies amid them
-KNOTS = 0.5  # between knots of a smooth force, in ln depth: 1 misses it by 4e-4 after first yield, 1/4 follows noise
+KNOTS = 0.35  # between knots of a smooth force, in ln depth: 1 misses it by 4e-4 after first yield, 1/6 follows noise
 RIM_KNOTS = 0.25  # the same under a rim, where no edge moves
 RADIUS_KNOTS = 1.0  # the same of a smooth contact radius, which jumps from point to point
 NARROWER = 0.5  # knots that tell what these ones miss
@@ -44,24 +44,27 @@ STRIDE = 6.0  # over the settings' steps: of a step in depth, over the depth
 SHALLOWEST = 1e-6  # depth of the first step over the largest, at least: that shallow, yielding is forgotten soon
 FORGOTTEN = 0.3  # of the shallowest depth, the first step of what flows from the touch on: the next ones forget it
 BISECTIONS = 60  # work
-ELEMENTS = 8.0  # along the contact radius, at tolerance 1e-3
+ELEMENTS = 7.5  # along the contact radius, at tolerance 1e-3
 RIM_ELEMENTS = 2.0  # the same under a rim, which the mesh is refined to, where a body begins to yield
 LEAST_STEPS = 16  # to begin with
 LEAST_ELEMENTS, LEAST_RIM_ELEMENTS = 4.0, 2.0  # that a user may choose
 COARSEST = 3.0  # elements of a mesh that tells something, where no rim is
-MOST_ELEMENTS, MOST_STEPS = 32.0, 160  # to begin with
+LOOSEST = 1.5  # times as many has the finest mesh at a loose tolerance
+MOST_ELEMENTS, MOST_STEPS = 32.0, 320  # to begin with
 ORDER = 3  # of the elements: they do not lock where flow keeps the volume
-STEPS, RIM_STEPS = 22, 18  # of a loading over six e-folds of the depth or so, there and where a body begins to yield
-FOLLOWING = 0.4  # power of the tolerance that elements and steps follow
+STEPS, RIM_STEPS = 33, 18  # of a loading over six e-folds of the depth or so, there and where a body begins to yield
+# Powers of the tolerance that elements and steps follow. More steps than that carry on more of what carrying errs by.
+FOLLOWING, STEPS_FOLLOWING, RIM_FOLLOWING = 0.4, 0.6, 0.4
 FURTHER, FURTHEST = 0.35, 40.0  # power of the depth over that of first yield that steps follow too, up to there
 FEWEST_STEPS = 6  # of a run that tells anything
-MESH_ORDER, RIM_ORDER = 1.5, 1.0  # of forces: 2 to 3 where an edge is a node of a growing mesh, but for noise
+MESH_ORDER, RIM_ORDER = 2.0, 1.0  # of forces: 2.3 to 4.6 where an edge is a node of a growing mesh, but for noise
 ONWARDS = 1.0 / 3.0  # of what half the steps change: their square counts out (Richardson)
+NOISY = 1.3  # of bars, by which they may scatter from mesh to mesh
 # Where flow turns under an edge, bars fall with the settings to 1.5 to 2.
 GROWTH = {
-    "mesh": Growth(order=1.5, step=1.1, most=1.6, work=2.0),
+    "mesh": Growth(order=2.0, step=1.1, most=1.6, work=2.0),
     "penalty": Growth(order=1.0, step=2.0, most=4.0, work=0.1),
-    "time_step": Growth(order=1.5, step=1.2, most=2.0, work=0.7),
+    "time_step": Growth(order=1.5, step=1.2, most=2.0, work=1.5),
     "far_field": Growth(order=2.0, step=1.5, most=2.0, work=0.3),
 }
 DEFAULTS: Given = {
@@ -69,7 +72,7 @@ DEFAULTS: Given = {
     "penalty": 64000.0,
     "enforcement": "corrected",
     "scheme": "galerkin",
-    "far_radius": 40.0,
+    "far_radius": 60.0,
 }
 
 
@@ -78,7 +81,7 @@ def finer(shares: Mapping[str, Array], numerics: Numerics, pinned: Set[str]) -> 
 
     ``shares`` (n,) of the tolerance, by cause.
     """
-    found = missing(shares, GROWTH, numerics, pinned)
+    found = missing({cause: NOISY * share for cause, share in shares.items()}, GROWTH, numerics, pinned)
     found = found.varied(steps=4 * math.ceil(found.steps / 4))
     return None if found == numerics else found
 
@@ -337,11 +340,14 @@ def settings(given: Given, course: Course) -> Numerics:
     the elements about a rim.
     """
     tolerance = tolerance_of(given)
-    finer = (DEFAULT_TOLERANCE / tolerance) ** FOLLOWING
-    further = finer * min(course.deepest / course.firm, FURTHEST) ** FURTHER
-    fewest, wanted = (RIM_ELEMENTS, RIM_ELEMENTS * further) if course.rim else (2.0 * COARSEST, ELEMENTS * finer)
+    tighter, further = DEFAULT_TOLERANCE / tolerance, min(course.deepest / course.firm, FURTHEST) ** FURTHER
+    if course.rim:
+        finer = tighter**RIM_FOLLOWING * further
+        fewest, wanted, steps = RIM_ELEMENTS, RIM_ELEMENTS * finer, RIM_STEPS * finer
+    else:
+        fewest, wanted = LOOSEST * COARSEST, ELEMENTS * tighter**FOLLOWING
+        steps = STEPS * tighter**STEPS_FOLLOWING * further
     elements = min(max(wanted, fewest), MOST_ELEMENTS)
-    steps = (RIM_STEPS if course.rim else STEPS) * further
     steps = max(4 * round(min(steps, MOST_STEPS) / 4), LEAST_STEPS)
     chosen = {**DEFAULTS, "tolerance": tolerance, "elements_per_contact": elements, "steps": steps}
     return Numerics(**{**chosen, **given}, contact_radius=1.0, contact_time=1.0, peak_share=0.5)
@@ -429,15 +435,15 @@ class Contrast(NamedTuple, Generic[Told]):
 class Varied(NamedTuple, Generic[Told]):
     """What runs with different settings tell.
 
-    With half of the settings' steps on three meshes: ``base`` on the finest, ``middle``, ``coarse``. On the coarsest
-    also with all steps, ``same``, with twice as many, ``finer``, with half the penalty, ``softer``, and cut half as far
-    away, ``nearer``.
+    With all steps on three meshes: ``base`` on the finest, ``middle``, ``coarse``. On the coarsest also with half the
+    steps, ``fewer``, with twice as many, ``finer``; with half of them and half the penalty, ``softer``, or cut half as
+    far away, ``nearer``.
     """
 
     base: Told
     middle: Told
     coarse: Told
-    same: Told
+    fewer: Told
     finer: Told
     softer: Told
     nearer: Told
@@ -445,18 +451,23 @@ class Varied(NamedTuple, Generic[Told]):
     @classmethod
     def of(cls, run: Callable[[Numerics, bool], Told], numerics: Numerics, coarsest: float) -> Varied[Told]:
         """Of a ``run`` with settings, on a mesh that is cut or not; ``coarsest``: elements along its contact radius."""
-        few = numerics.varied(steps=max(numerics.steps // 2, FEWEST_STEPS))
-        middle = few.varied(elements_per_contact=math.sqrt(coarsest * few.elements_per_contact))
-        coarse = few.varied(elements_per_contact=coarsest)
+        middle = numerics.varied(elements_per_contact=math.sqrt(coarsest * numerics.elements_per_contact))
+        coarse = numerics.varied(elements_per_contact=coarsest)
+        few = coarse.varied(steps=max(numerics.steps // 2, FEWEST_STEPS))
         return cls(
-            base=run(few, False),
+            base=run(numerics, False),
             middle=run(middle, False),
             coarse=run(coarse, False),
-            same=run(coarse.varied(steps=numerics.steps), False),
+            fewer=run(few, False),
             finer=run(coarse.varied(steps=2 * numerics.steps), False),
-            softer=run(coarse.varied(penalty=0.5 * coarse.penalty), False),
-            nearer=run(coarse, True),
+            softer=run(few.varied(penalty=0.5 * few.penalty), False),
+            nearer=run(few, True),
         )
+
+    @property
+    def meshes(self) -> tuple[Told, Told, Told]:
+        """The three that differ in nothing else."""
+        return self.base, self.middle, self.coarse
 
     def mended(self, onwards: Callable[[Told, Told, Told, float], Told]) -> Told:
         """The finest mesh with what the coarsest knows of the steps: their square counts out (Richardson).
@@ -466,7 +477,7 @@ class Varied(NamedTuple, Generic[Told]):
         return onwards(self.base, self._fine(onwards), self.coarse, 1.0)
 
     def _fine(self, onwards: Callable[[Told, Told, Told, float], Told]) -> Told:
-        return onwards(self.finer, self.finer, self.same, ONWARDS)
+        return onwards(self.finer, self.finer, self.coarse, ONWARDS)
 
     def pairs(
         self, onwards: Callable[[Told, Told, Told, float], Told], settling: float
@@ -476,11 +487,11 @@ class Varied(NamedTuple, Generic[Told]):
         From mesh to mesh errors fall by ``settling``: the mean of what two pairs tell of the finest, for two meshes may
         agree by chance; of what is left of the steps once their square counts out, order one is trusted.
         """
-        fewer = onwards(self.same, self.same, self.coarse, ONWARDS)
+        few = onwards(self.coarse, self.coarse, self.fewer, ONWARDS)
         half = 0.5 * SAFETY / (settling - 1.0)
         return {
             "mesh": (Contrast(self.base, self.middle, half), Contrast(self.middle, self.coarse, half / settling)),
-            "penalty": (Contrast(self.coarse, self.softer, SAFETY),),
-            "time_step": (Contrast(self._fine(onwards), fewer, SAFETY),),
-            "far_field": (Contrast(self.coarse, self.nearer, SAFETY / 3.0),),
+            "penalty": (Contrast(self.fewer, self.softer, SAFETY),),
+            "time_step": (Contrast(self._fine(onwards), few, SAFETY),),
+            "far_field": (Contrast(self.fewer, self.nearer, SAFETY / 3.0),),
         }

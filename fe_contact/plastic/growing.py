@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from skfem import Element, MeshTri
 
 TERMS = 4  # of the exponential's series, over each part of a growth
-PART = 1.5  # of a growth, times the flow's largest rate: within 2.6, up to where the series of these rates stays small
+PART = 1.25  # of a growth, times the flow's largest rate: within 2.6, up to where the series of these rates stays small
 NEAR = 0.1  # rounding: of that rate, which only tells the parts
 
 

@@ -99,7 +99,7 @@ class YieldingWay:
         loadings = Varied.of(partial(self._run, course), numerics, self.course.coarsest(numerics))
         pressed = [loading.pressed for loading in loadings]
         told = Varied(*(one.logarithm(depth) for one in pressed))
-        missed = np.mean([one.misfit(depth) for one in pressed], axis=0)
+        missed = np.median([one.misfit(depth) for one in Varied(*pressed).meshes], axis=0)
         pairs = told.pairs(_onwards, self.course.settling(numerics))
         pairs["time_step"] += (Contrast(missed, np.zeros_like(missed), SAFETY),)
         return ForcesFound(

@@ -137,17 +137,19 @@ class Presser:
             raise PlasticFlowSlow(self.unit * depth, self.most)
 
     def _edge(self, found: Equilibrium) -> float:
-        """Where the pressure ends: between the last point that touches and the next, as the overlap changes sign."""
+        """Where the gap closes, between the last point that touches and the next: it opens as the power 3/2 of the
+        distance from there (Johnson, Contact Mechanics, 1985, 5.1), which two points tell.
+        """
         if self.ground.rim:
             return 1.0
         touch, points = found.balance.touch, self.ground.points
-        depth = touch.overlap.depth.ravel()
         inside = np.flatnonzero(touch.touching.ravel())
         last = int(inside[-1]) if inside.size else 0
-        if last + 1 >= points.size:
+        if last + 2 >= points.size:
             return np.inf
-        share = depth[last] / max(depth[last] - depth[last + 1], np.finfo(float).tiny)
-        return float(points[last] + min(max(share, 0.0), 1.0) * (points[last + 1] - points[last]))
+        first, second = np.maximum(-touch.overlap.depth.ravel()[last + 1 : last + 3], 0.0) ** (2.0 / 3.0)
+        back = first / (second - first) if second > first else np.inf
+        return float(max(points[last + 1] - back * (points[last + 2] - points[last + 1]), points[last]))
 
     def loaded(self, before: Station, here: Station, depth: float, halvings: int = HALVINGS) -> Iterator[Station]:
         """End of the step from ``here`` to a depth, or ends of its halves where it does not settle.
