@@ -398,7 +398,7 @@ class PlasticLoading:
         """One step further, to a depth in units of the course."""
         before, here = self.ends[-2:][0], self.ends[-1]
         taken = list(self.presser.loaded(before, here, depth))
-        self.ends[-1] = here._replace(middle=None)  # memory: the next step alone is guessed by it
+        self.ends[-1] = here._replace(middle=None, began=None)  # memory: the next step alone is guessed by them
         self.ends += taken
 
     @property

@@ -65,7 +65,8 @@ class PlasticFlowSlow(NotReached):
 class Station(NamedTuple):
     """A body pressed ``depth`` deep: force, contact radius, in units of the ground; on its mesh, ``scale`` long in
     these units, displacement (2 N,) in units of the mesh, state, pressure (facets, points). ``worked``: plastic work so
-    far, in units of the ground; ``middle``: the end of the first stage of the step that led here.
+    far, in units of the ground; ``middle``: the end of the first stage of the step that led here; ``began`` (2 N,): the
+    displacement that the stage which led here began with, on its mesh.
     """
 
     depth: float
@@ -77,6 +78,7 @@ class Station(NamedTuple):
     scale: float = 1.0
     worked: float = 0.0
     middle: Station | None = None
+    began: Array | None = None
 
 
 class Counts(NamedTuple):
@@ -203,17 +205,19 @@ class Presser:
         first, last = like
         share = (depth - here.depth) / (last.depth - first.depth) if last is not first else 0.0
         ground, radius = self.ground, here.radius * (depth / here.depth) ** spread
-        onwards = last.displacement - ground.moved(first.displacement, last.scale / first.scale)
+        began = ground.moved(first.displacement, last.scale / first.scale) if last.began is None else last.began
+        onwards = last.displacement - began
         pressure = np.maximum(here.pressure + share * (last.pressure - first.pressure), 0.0)
         for _ in range(FITTED):
             scale = 1.0 if ground.rim else max(radius, here.scale)  # what has flowed in is not told again
             growth = scale / here.scale
-            start = ground.moved(here.displacement, growth) + share * onwards
+            began = ground.moved(here.displacement, growth)
+            start = began + share * onwards
             found = self.settled(ground.carried(state, growth), depth, start, pressure, scale, scale)
             radius = found.radius
             if abs(radius / scale - 1.0) < MISFIT or growth == 1.0:
                 break
-        return found
+        return found._replace(began=began)
 
     def first(self, depth: float, radius: float) -> Station:
         """From rest to a first depth at once, with a contact radius to expect. Raises PlasticFlowLost."""
