@@ -193,3 +193,19 @@ def test_flow_that_reaches_beyond_what_may_yield_is_named() -> None:
         PlasticZoneWide, match=r"flow reaches 6\.4 contact radii, further than is meshed; cure: a lower"
     ):
         loading.to(known.deepest)
+
+
+def test_a_stage_tells_one_displacement_on_a_larger_mesh(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The one it begins with: how far the last stage went from where it began is known. The first one has none to ask."""
+    told, moved = list[float](), Ground.moved
+
+    def counted(body: Ground, displacement: Array, growth: float) -> Array:
+        told.append(growth)
+        return moved(body, displacement, growth)
+
+    monkeypatch.setattr(Ground, "moved", counted)
+    known = course()
+    loading = PlasticLoading.of(known, settings({"elements_per_contact": 4.0, "steps": 16}, known))
+    loading.to(known.deepest)
+    stages = 2 * (len(loading.ends) - 1)
+    assert stages <= len(told) <= stages + 4  # one more where the mesh is fitted again
