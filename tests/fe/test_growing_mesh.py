@@ -196,7 +196,7 @@ def test_flow_that_reaches_beyond_what_may_yield_is_named() -> None:
 
 
 def test_a_stage_tells_one_displacement_on_a_larger_mesh(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The one it begins with: how far the last stage went from where it began is known. The first one has none to ask."""
+    """The one it begins with: how far the last stage went from where it began is known."""
     told, moved = list[float](), Ground.moved
 
     def counted(body: Ground, displacement: Array, growth: float) -> Array:
