@@ -33,7 +33,7 @@ from lumped.shapes import Shape
 Told = TypeVar("Told")
 Smooth = Callable[[Array], Array]
 BEYOND = 1.2  # of the largest depth: up to there forces are found, so that it lies amid them
-KNOTS = 0.35  # between knots of a smooth force, in ln depth: 1 misses it by 4e-4 after first yield, 1/4 follows more of its noise
+KNOTS = 0.35  # between knots of a smooth force, in ln depth: 1 misses it by 4e-4 after first yield, 1/4 follows noise
 RIM_KNOTS = 0.25  # the same under a rim, where no edge moves
 RADIUS_KNOTS = 1.0  # the same of a smooth contact radius, which jumps from point to point
 NARROWER = 0.5  # knots that tell what these ones miss
