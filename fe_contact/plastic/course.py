@@ -3,8 +3,8 @@
 As the body flows through its elements the force goes up and down, by 1e-4 to 5e-4 under a contact that grows, and from
 step to step by 1e-3 under a rim: noise without a trend. So a force is a smooth function of the depth through those of
 all steps, some of which go deeper than asked; two meshes then differ by their trends, and a third of their noise. Where
-the body begins to yield the force's curvature begins at once: before it the force is the elastic one but for a factor,
-and from there on it leaves that with its slope.
+the body begins to yield the force's curvature begins at once: before it the force is a power of the depth, but for what
+the profile is none, and from there on it leaves that with its slope.
 """
 
 from __future__ import annotations
@@ -25,7 +25,6 @@ from fe_contact.plastic.path import ELASTIC_RATIO, PlasticZoneWide, Presser, Sta
 from fe_contact.progress import Count, Counted, Progress, uncounted
 from fe_contact.settings import DEFAULT_TOLERANCE, RANGES, Given, Numerics, tolerance_of
 from lumped.errors import BadInput, Fault
-from lumped.load_curves.base import LoadCurve
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.shapes import Shape
@@ -36,6 +35,7 @@ BEYOND = 1.2  # of the largest depth: up to there forces are found, so that it l
 KNOTS = 0.35  # between knots of a smooth force, in ln depth: 1 misses it by 4e-4 after first yield, 1/4 follows noise
 RIM_KNOTS = 0.25  # the same under a rim, where no edge moves
 RADIUS_KNOTS = 1.0  # the same of a smooth contact radius, which jumps from point to point
+ELASTIC_DEGREE = 3  # at most, of a force over its power before anything yields
 NARROWER = 0.5  # knots that tell what these ones miss
 SAMPLES = 2  # of a curve between two of its knots, about, at least
 FAINT, FIRM = 0.5, 0.9  # of the yield strength, mean elastic pressures: before them nothing yields, and hardly anything
@@ -105,7 +105,7 @@ def check_given(given: Given, source: str, profile: Shape) -> None:
 class Forces:
     """Forces (n,), N, and contact radii, m, at depths (n,), m, and the smooth curves through them.
 
-    ``elastic``: how many of them lie before the body yields; ``curve``: its force up to there but for a factor.
+    ``elastic``: how many of them lie before the body yields, where the force is nearly a ``power`` of the depth.
     """
 
     depth: Array
@@ -114,31 +114,35 @@ class Forces:
     power: float
     knots: float
     elastic: int
-    curve: LoadCurve
 
     @cached_property
-    def _logarithm(self) -> Smooth:
-        x, y = np.log(self.depth), np.log(self.force)
-        if self.elastic == 0:
-            return smooth(x, y, self.knots)
-        lost = y - np.log(self.curve.force(self.depth))
-        level = float(lost[: self.elastic].mean())
+    def _beside(self) -> Array:
+        """Logarithms of the forces over that power of the depth."""
+        return np.asarray(np.log(self.force) - self.power * np.log(self.depth))
 
-        def before(x: Array) -> Array:
-            return np.asarray(level + np.log(self.curve.force(np.exp(x))))
+    @cached_property
+    def _before(self) -> np.polynomial.Polynomial:
+        """Of the same, while nothing yields: a constant but for what the profile is no power and for noise."""
+        x, degree = np.log(self.depth[: self.elastic]), min((self.elastic - 1) // 2, ELASTIC_DEGREE)
+        return np.polynomial.Polynomial.fit(x, self._beside[: self.elastic], degree, domain=[x[0], x[0] + 1.0])
 
-        if self.elastic == x.size:
-            return before
-        begins = _onset(x[self.elastic - 1 :], lost[self.elastic - 1 :] - level)
-        force, stiffness = self.curve.force_and_slope(math.exp(begins))
-        slope = float(stiffness) * math.exp(begins) / float(force)
-        yields = x > begins
-        beyond = x[yields] - begins
-        bends = smooth(beyond, y[yields] - before(np.array([begins])) - slope * beyond, self.knots, rising=True)
+    @cached_property
+    def _after(self) -> Smooth:
+        """Of the same, over all depths."""
+        x, count = np.log(self.depth), self.elastic
+        if count == 0:
+            return smooth(x, self._beside, self.knots)
+        elastic = self._before
+        if count == x.size:
+            return elastic
+        begins = _onset(x[count - 1 :], (self._beside - elastic(x))[count - 1 :])
+        level, slope = elastic(begins), elastic.deriv()(begins)
+        beyond = x[x > begins] - begins
+        bends = smooth(beyond, self._beside[x > begins] - level - slope * beyond, self.knots, rising=True)
 
         def of(x: Array) -> Array:
             beyond = np.maximum(x - begins, 0.0)
-            return np.asarray(before(np.minimum(x, begins)) + slope * beyond + bends(beyond))
+            return np.asarray(elastic(np.minimum(x, begins)) + slope * beyond + bends(beyond))
 
         return of
 
@@ -149,12 +153,16 @@ class Forces:
     def logarithm(self, depth: Array) -> Array:
         """Of the force at depths, m; before the first one it is a power of the depth."""
         inside = np.clip(depth, self.depth[0], self.depth[-1])
-        before = np.minimum(np.log(np.maximum(depth, np.finfo(float).tiny) / self.depth[0]), 0.0)
-        return np.asarray(self._logarithm(np.log(inside)) + self.power * before)
+        deep = np.log(np.maximum(depth, np.finfo(float).tiny))
+        return np.asarray(self._after(np.log(inside)) + self.power * np.minimum(deep, math.log(self.depth[-1])))
 
     def misfit(self, depth: Array) -> Array:
-        """What narrower knots change of that: trends that these ones miss, and some noise."""
-        return replace(self, knots=NARROWER * self.knots).logarithm(depth) - self.logarithm(depth)
+        """What narrower knots change of that, and what it misses before yielding: trends, and some noise."""
+        changed = replace(self, knots=NARROWER * self.knots).logarithm(depth) - self.logarithm(depth)
+        if self.elastic == 0:
+            return changed
+        missed = self._beside[: self.elastic] - self._before(np.log(self.depth[: self.elastic]))
+        return np.asarray(changed + np.copysign(np.abs(missed).max(), changed))
 
     def contact_radius(self, depth: Array) -> Array:
         """At depths, m; there in proportion to the root of force over depth."""
@@ -415,7 +423,6 @@ class PlasticLoading:
             power=course.power,
             knots=RIM_KNOTS if course.rim else KNOTS,
             elastic=yields.index(True) if True in yields else len(yields),
-            curve=course.profile.load_curve,
         )
 
 
