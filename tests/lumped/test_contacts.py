@@ -148,6 +148,18 @@ def test_every_contact_is_damped_by_its_own_speed() -> None:
     assert len(contacts) == 3
 
 
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6])
+def test_a_contact_that_begins_in_the_dent_is_deepest_where_it_begins(tolerance: float) -> None:
+    """Free flight ends on the way out: k (d + 1.5 A v) = 0 in a dent deeper than the weight presses, (m g/k)^(2/3)."""
+    law, damping, weight = LawChoice("kuwabara_kono", {"k": 1.0, "A": 1.5}), 1.5 * 1.5, 0.05
+    scene = Scene(None, 1.0, 1.0, law=law, model=Model(gravity=weight), motion=Motion(impacts=2, end_time=200.0))
+    _, again = simulate(laws.kuwabara_kono.of(scene), scene, tolerance).contacts
+    assert again["velocity"] < 0.0
+    met = -damping * again["velocity"]
+    assert met > weight ** (2.0 / 3.0)
+    assert again["peak_depth"] == pytest.approx(met, rel=1e-9)
+
+
 def test_tension_to_depth_zero_as_published(impact: Build, unit_time: float) -> None:
     # the audit of the paper, section 4: contact not clipped, in units of the elastic contact time
     for moduli, tau, e, duration in (((1.0,), 0.2, 0.539, 0.974), ((5.0,), 0.1, 0.017, None)):

@@ -54,8 +54,8 @@ class Contact:
 
     @property
     def deepest(self) -> float:
-        """Largest depth, m."""
-        return max(float(step.depth.max()) for phase in self.phases for step in phase.steps)
+        """Largest depth, m; a contact that begins in the dent before, on the way out, is deepest at its touch."""
+        return max(self.first.depth, *(float(step.depth.max()) for phase in self.phases for step in phase.steps))
 
 
 def contact(
