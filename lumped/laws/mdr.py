@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from lumped.errors import BadInput, Fault
+from lumped.errors import BadInput, Fault, NotReached
 from lumped.laws._assembly import Answer, assemble, bars, values_of, wider
 from lumped.laws.base import LawKind, check_geometry, check_half_space, waves
 from lumped.numbers import Array, Clock, local, peak
@@ -19,6 +19,7 @@ from lumped.scene.scene import Scene
 from lumped.solvers.mdr.nest import (
     Level,
     Nest,
+    alike,
     coarse,
     coarse_beyond,
     limit,
@@ -81,12 +82,18 @@ class SpringRow:
         if shrinks is not None:
             nest = replace(nest, end_time=shrinks or stop, turns=not shrinks, cut=None)
         nest, level, before = nest.begun(track.approach[-1].time)
-        levels, limits, widest, parts = [level], list[Level](), list[float](), 1
+        levels, limits, widest, parts, steps = [level], list[Level](), list[float](), 1, level.steps
+        answer = None
         while parts < MOST_PARTS:
             parts *= 2
             turn = predicted_turn(before, levels[-1].turn)
             before = levels[-1].turn
-            levels.append(nest.level(parts, turn))
+            level = nest.level(parts, turn)
+            steps += level.steps
+            if not alike(levels[-1], level):  # the coarser one has missed what comes just before the end time
+                levels, limits, answer = [level], [], None
+                continue
+            levels.append(level)
             limits.append(limit(levels[-2], levels[-1], 2))
             if len(limits) > 1:
                 answer = _answer(scene, limit(limits[-2], limits[-1], 4), again)
@@ -100,7 +107,9 @@ class SpringRow:
                 known = (quantities["history_l2"].error or 0.0) <= tolerance
                 if meets(quantities, tolerance) or (known and _stalled(widest)):
                     break
-        work = {"steps": sum(level.steps for level in levels), "springs": levels[-1].approach.shape[1]}
+        if answer is None:
+            raise NotReached("finer and coarser steps of the spring row end differently; cure: a later motion.end_time")
+        work = {"steps": steps, "springs": levels[-1].approach.shape[1]}
         numerics = {"levels": len(levels), "parts": parts}
         return assemble(self.name, scene, tolerance, answer, quantities, force_error, clock, numerics, work)
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from lumped import Motion, Scene, laws, simulate
 from lumped.result.history import End
@@ -35,3 +36,18 @@ def test_an_end_near_the_turn_is_a_number_with_a_true_bar(
             assert found.history.time[-1] == stopped.end_time
             assert abs(found.energy["residual"] or 0.0) < 1e-9 * (found.energy["in"] or 0.0)
             assert not uncovered(found, exact, QUANTITIES)
+
+
+@pytest.mark.parametrize("later", [1e-4, 3e-4, 1e-3, 4e-3])
+def test_an_end_just_behind_the_separation_cuts_nothing(
+    later: float, uncovered: Callable[..., dict[str, float]]
+) -> None:
+    """Coarse steps have the contact last longer than that: they are left out."""
+    network = {"E_inf": 2.14e7, "E": [3.36e7, 3.23e6], "tau": [2.02e-3, 1.99e-2], "nu": 0.125}
+    striker = {"shape": "power", "coefficient": 0.0557, "exponent": 2.0, "mass": 950.0, "velocity": 5.03}
+    target = {"shape": "half_space", "material": {"law": "prony", **network}}
+    whole = Scene.from_dict({"striker": striker, "target": target})
+    exact = simulate(laws.ting.of(whole), whole, 1e-9)
+    ended = replace(whole, motion=Motion(end_time=(1.0 + later) * (exact.quantities["duration"].value or 0.0)))
+    found = simulate(laws.mdr.of(ended), ended, 1e-5)
+    assert not uncovered(found, exact, (*QUANTITIES, "duration", "restitution"))

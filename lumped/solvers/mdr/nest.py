@@ -272,18 +272,19 @@ def predicted_turn(before: float, last: float) -> float:
     return last + 0.25 * (last - before)
 
 
+def alike(coarse: Level, fine: Level) -> bool:
+    """Whether both end in the same way, on the same side of the turn: just before the end time they may not."""
+    return coarse.end is fine.end and bool(coarse.rebound.size) == bool(fine.rebound.size)
+
+
 def limit(coarse: Level, fine: Level, order: int) -> Level:
     """Richardson's limit of two which err by this power of h, the finer of twice the steps, on the rows of the finer.
 
-    The correction is known on every second row, and is smooth. Raises NotReached where the two end differently.
+    The correction is known on every second row, and is smooth. The two are :func:`alike`.
     """
-    if coarse.end is not fine.end:
-        raise NotReached("finer and coarser steps of the spring row end differently")
     gain = 1.0 / (2.0**order - 1.0)
     one, finer = coarse.rebound, fine.rebound
     stop = fine.stop + gain * (fine.stop - coarse.stop)
-    if bool(one.size) != bool(finer.size):
-        raise NotReached("finer and coarser steps of the spring row turn on either side of the end time")
     if finer.size and fine.end is End.TIME:
         one, finer = _whole(one, finer)
         if finer[0, -1] <= fine.last:
