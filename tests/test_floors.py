@@ -35,7 +35,7 @@ FINITE_ELEMENTS = LUMPED | MESHES | {"fe_contact", "matplotlib", "threadpoolctl"
 ALLOWED = {"lumped": LUMPED, "meshes": MESHES, "fe_contact": FINITE_ELEMENTS}
 HEAVY = {"skfem", "gmsh", "matplotlib", "meshio", "scipy.integrate"}
 NOT_LOADED = {
-    "lumped": HEAVY | {"meshes", "fe_contact", "pandas"},
+    "lumped": HEAVY | {"meshes", "fe_contact", "pandas", "lumped.laws"},
     "meshes": {"lumped", "fe_contact", "skfem", "gmsh", "matplotlib"},
     "fe_contact": {"matplotlib", "scipy.integrate", *ONE_IMPORTER},
 }

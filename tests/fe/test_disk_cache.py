@@ -28,7 +28,7 @@ import sys, fe_contact
 from lumped import Scene
 found = fe_contact.run(Scene.load(sys.argv[1]), 1e-2)
 print(found.history.force.tobytes().hex())
-print(*sorted({"skfem", "gmsh", "scipy.sparse.linalg", "lumped.laws._hereditary"} & set(sys.modules)))
+print(*sorted({"skfem", "gmsh", "scipy.sparse.linalg"} & set(sys.modules)))
 """
 WRITER = """
 from fe_contact.assembly import disk_cache
@@ -100,7 +100,7 @@ def test_a_body_of_constant_bulk_modulus_is_known_too(disk: Path) -> None:
 @pytest.mark.parametrize(
     "name", ["polymer-sphere", "polymer-layer", pytest.param("rod-in-ring", marks=pytest.mark.full)]
 )
-def test_a_known_geometry_loads_no_mesher_no_sparse_solver_and_no_law_with_memory(name: str, disk: Path) -> None:
+def test_a_known_geometry_loads_no_mesher_and_no_sparse_solver(name: str, disk: Path) -> None:
     (force, loaded), (again, loaded_again) = in_a_process(name), in_a_process(name)
     assert force == again
     assert loaded == "gmsh scipy.sparse.linalg skfem"
