@@ -290,7 +290,7 @@ def sideways(scene: Scene, peak: Peak) -> LedgerEntry:
     bulk modulus has chosen.
     """
     effect, material = "constant nu against constant bulk modulus", scene.geometry.material
-    treated = "constant nu"
+    treated, own = "constant nu", f"{scene.target.owner}.material.constant"
     if material.constant == "bulk":
         return LedgerEntry(effect, "constant bulk modulus", 0.0, "as the scene says")
     if material.young.is_elastic or math.isinf(material.bulk):
@@ -305,9 +305,9 @@ def sideways(scene: Scene, peak: Peak) -> LedgerEntry:
         curve = scene.target.load_curve(scene.profile, material.nu)
         forces = [_struck(one, curve, scene, peak) for one in (_bulk_modulus(scene, peak), material.contact_modulus())]
     except FeContactError:  # no load curve, or one that ends before this depth
-        return LedgerEntry(effect, treated, None, "no load curve tells it; run both of target.material.constant")
+        return LedgerEntry(effect, treated, None, f"no load curve tells it; run both of {own}")
     refused = _no_bulk(scene)
-    note, key = "both, by a power of the depth", "" if refused else f"{scene.target.owner}.material.constant"
+    note, key = "both, by a power of the depth", "" if refused else own
     said = f"{note}; {refused}" if refused else note
     return LedgerEntry(effect, treated, abs(forces[0] / forces[1] - 1.0), said, key, value=None if refused else "bulk")
 
