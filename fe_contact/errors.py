@@ -46,6 +46,14 @@ class ContactNotSettled(NotReached):
         super().__init__(f"contact not found at t = {time:.6g} s; {cure}")
 
 
+class FlowNotSettled(NotReached):
+    """The plastic flow of a step was not found."""
+
+    def __init__(self, time: float) -> None:
+        cure = "cure: raise numerics.steps, or a larger target.material.hardening_modulus"
+        super().__init__(f"plastic flow not found at t = {time:.6g} s; {cure}")
+
+
 class ContactLost(NotReached):
     """The step would end after separation: a march of small strains retries with a shorter one."""
 

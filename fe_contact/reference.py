@@ -92,7 +92,7 @@ def check(scene: Scene, given: Given) -> None:
 
 def model_of(scene: Scene) -> ImpactModel:
     """What answers a scene, by its model. Loaded when it is asked: most scenes are without waves, strained little."""
-    if scene.model.plasticity:
+    if scene.model.plasticity and not scene.model.inertia:
         from fe_contact.plastic.impact import YIELDING
 
         return YIELDING

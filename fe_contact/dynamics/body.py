@@ -23,6 +23,7 @@ import scipy.sparse as sparse
 
 from fe_contact.assembly.forms import Array, Matrix
 from fe_contact.assembly.interior import factorized
+from fe_contact.dynamics.flow import Flowed, Yields
 from fe_contact.schemes import galerkin
 from lumped.materials import Relaxation
 
@@ -153,7 +154,7 @@ class BodyWithMass:
 
     ``mass`` (N, N) of the deformable bodies, sparse, may have zero rows; ``rigid`` (N,) that of rigid bodies;
     ``parts`` their stiffness; ``dashpots`` (N, N) that carry waves away, sparse, or None; ``gravity`` (N,) acceleration
-    of free fall, m/s2; ``pressing`` where contact may be.
+    of free fall, m/s2; ``pressing`` where contact may be; ``yields`` what of it may flow, None: nothing.
     """
 
     mass: Matrix
@@ -162,6 +163,7 @@ class BodyWithMass:
     dashpots: Matrix
     gravity: Array
     pressing: Pressing
+    yields: Yields | None = None
 
     @property
     def size(self) -> int:
@@ -203,7 +205,7 @@ class BodyState(NamedTuple):
     ``motions`` (3, 3, N): displacement, velocity and acceleration, the inertia times these, the damping times these;
     ``branches`` of every part, (k, N), and its ``pulls`` (1 + k, N): its unit stiffness times the displacement and each
     branch; ``signed_pressure`` (q,), negative where open. All are linear in the increment of a step, which is all that
-    the matrices are multiplied with.
+    the matrices are multiplied with. ``flowed``: what has flowed of a body that yields, which is not.
     """
 
     time: float
@@ -211,6 +213,7 @@ class BodyState(NamedTuple):
     branches: tuple[Array, ...]
     pulls: tuple[Array, ...]
     signed_pressure: Array
+    flowed: Flowed | None = None
 
     @property
     def displacement(self) -> Array:
@@ -267,7 +270,8 @@ def undeformed(body: BodyWithMass, velocity: Array) -> BodyState:
     motion, free = np.array([np.zeros(body.size), velocity, np.zeros(body.size)]), body.massive
     if forces.any():
         motion[2, free] = factorized(body.inertia[free][:, free])(forces[free])
-    return state_of(body, 0.0, motion, branches, -np.ones(body.pressing.weights.size))
+    state = state_of(body, 0.0, motion, branches, -np.ones(body.pressing.weights.size))
+    return state if body.yields is None else state._replace(flowed=body.yields.at_rest)
 
 
 def internal(body: BodyWithMass, pulls: tuple[Array, ...]) -> Array:

@@ -276,6 +276,7 @@ class Energies(NamedTuple):
     strain: float
     contact: float
     viscous: float
+    plastic: float
     radiated: float
     numerical: float
 
@@ -287,13 +288,13 @@ class Energies(NamedTuple):
     @property
     def residual(self) -> float:
         """What no term accounts for."""
-        return self.work - self.total - self.viscous - self.radiated - self.numerical
+        return self.work - self.total - self.viscous - self.plastic - self.radiated - self.numerical
 
 
 def account_at_start(body: BodyWithMass, state: BodyState) -> Energies:
     """The account of energy of a body about to move."""
     standing = _standing(body, state)
-    return Energies(sum(standing), *standing, 0.0, 0.0, 0.0)
+    return Energies(sum(standing), *standing, 0.0, 0.0, 0.0, 0.0)
 
 
 def account_after(
@@ -313,6 +314,7 @@ def account_after(
         account.work + float(body.weight @ change),
         *standing,
         account.viscous + sum(heats),
+        0.0 if after.flowed is None else after.flowed.worked,
         account.radiated + _radiated(body, before, after, step, change),
         account.numerical + numerical + pressed,
     )
@@ -330,6 +332,8 @@ def _standing(body: BodyWithMass, state: BodyState) -> tuple[float, float, float
     springs = 0.5 * float((body.pressing.weights * state.pressure) @ overlap)
     parts = zip(body.parts, state.branches, state.pulls, strict=True)
     strain = sum(part.stored(state.displacement, own, pulls) for part, own, pulls in parts)
+    if state.flowed is not None:
+        strain += state.flowed.elastic(state.displacement)
     moving = state.pushed[1] - body.rigid * v
     return 0.5 * float(body.rigid @ v**2), 0.5 * float(v @ moving), strain, springs
 
@@ -367,6 +371,9 @@ def _of_stress(stepper: ExplicitStepper | ImplicitStepper, before: BodyState, af
     if stepper.body.damping is not None:
         begun, ended = before.damped[:2] @ change, after.damped[:2] @ change
         lost += float(late * ended[1] + early * begun[1] - (ended[0] - begun[0]) / stepper.step)
+    if before.flowed is not None and after.flowed is not None:
+        taken = after.flowed.spent(after.displacement) - before.flowed.spent(before.displacement)
+        lost -= float(change @ (late * after.flowed.forces + early * before.flowed.forces)) + taken
     return lost
 
 

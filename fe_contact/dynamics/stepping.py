@@ -35,6 +35,7 @@ from fe_contact.assembly.interior import factorized
 from fe_contact.contact.enforcement.base import Enforcement
 from fe_contact.contact.problem import ContactProblem, PressedSurface, Touching
 from fe_contact.dynamics.body import BodyState, BodyWithMass, Pressing, internal, motions_of, state_of
+from fe_contact.dynamics.flow import settled
 from fe_contact.dynamics.schemes.base import Scheme
 from fe_contact.errors import ContactNotSettled
 from lumped.errors import BadInput, Fault
@@ -133,15 +134,28 @@ class ImplicitStepper:
         return surface_of(compliance, pressing)
 
     def advance(self, state: BodyState) -> tuple[BodyState, Found]:
-        """The state a step later; raises ContactNotSettled."""
+        """The state a step later; raises ContactNotSettled, FlowNotSettled."""
+        if self.body.yields is None or state.flowed is None:
+            change, found = self._pressed(state, self._free(state))
+            return self._moved(state, change, found), found
+        free, before, late = self._free(state), state.flowed, 1 - self.scheme.alpha_f
+
+        def under(held: Array) -> tuple[Array, tuple[Array, Found]]:
+            change, found = self._pressed(state, free + self.solve(late * (held - before.forces)))
+            return state.displacement + change, (change, found)
+
+        flowed, (change, found) = settled(under, self.body.yields, before, state.time)
+        return self._moved(state, change, found)._replace(flowed=flowed), found
+
+    def _pressed(self, state: BodyState, change: Array) -> tuple[Array, Found]:
+        """The increment (N,) with new pressure, of one without; raises ContactNotSettled."""
         pressing = self.body.pressing
-        change = self._free(state)
         overlap = pressing.overlap(state.displacement + change)
         found = self.enforced.found(self.surface, overlap, state.signed_pressure > 0.0, state.time)
         forces = pressing.forces(found.pressure)
         for moved in self.moved:
             change[moved.own] += moved.by(forces)
-        return self._moved(state, change, found), found
+        return change, found
 
     def flown(self, state: BodyState) -> BodyState:
         """The state a step later if nothing presses in it, its signed pressure that of the overlap."""
@@ -150,8 +164,9 @@ class ImplicitStepper:
         return self._moved(state, change, Found(self.enforced.penalty * overlap, 0))
 
     def _free(self, state: BodyState) -> Array:
-        """The increment (N,) without new pressure."""
-        return self.solve(self._known(state) + self.scheme.alpha_f * self.body.pressing.load(state.pressure))
+        """The increment (N,) without new pressure and flow."""
+        held = 0.0 if state.flowed is None else state.flowed.forces
+        return self.solve(self._known(state) + held + self.scheme.alpha_f * self.body.pressing.load(state.pressure))
 
     def _effective(self) -> Matrix:
         body, (alpha_m, alpha_f, beta, gamma, _), dt = self.body, self.scheme, self.step
@@ -183,6 +198,7 @@ class ImplicitStepper:
             branches=tuple(law.moved(own, change) for law, own in zip(self.laws, state.branches, strict=True)),
             pulls=tuple(law.pulled(own, pull) for law, own, pull in zip(self.laws, state.pulls, pulled, strict=True)),
             signed_pressure=found.signed_pressure,
+            flowed=state.flowed,
         )
 
 
@@ -223,12 +239,14 @@ def _newmark(scheme: Scheme, dt: float) -> tuple[Array, Array]:
 
 
 class ExplicitStepper:
-    """Takes steps of one length, s, of one body. Raises BadInput for a material with a parallel viscosity."""
+    """Takes steps of one length, s, of one body. Raises BadInput for what yields, or has a parallel viscosity."""
 
     def __init__(self, body: BodyWithMass, scheme: Scheme, enforced: Enforced, step: float) -> None:
         if any(part.relaxation.viscosity > 0.0 for part in body.parts):
             reason = "an explicit scheme has no answer to a parallel viscosity; accepted: an implicit one"
             raise BadInput(Fault("numerics", "scheme", reason))
+        if body.yields is not None:
+            raise BadInput(Fault("numerics", "scheme", "explicit: nothing yields by it; accepted: an implicit one"))
         self.body, self.scheme, self.enforced, self.step = body, scheme, enforced, step
         self.laws = [part.law(step) for part in body.parts]
         inertia = body.inertia if body.damping is None else body.inertia + step / 2 * body.damping

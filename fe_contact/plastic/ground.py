@@ -211,7 +211,7 @@ class MeshedGround:
 
 @cached
 def _meshed(sizes: Sizes, poisson: float) -> MeshedGround:
-    basis = _basis(_mesh(sizes), sizes.order)
+    basis = yielding_basis(_mesh(sizes), sizes.order)
     middles = basis.mesh.p[:, basis.mesh.t].mean(axis=1)
     distance = np.hypot(middles[0], middles[1])
     elements = np.flatnonzero(distance < sizes.core)
@@ -246,7 +246,7 @@ def _mesh(sizes: Sizes) -> MeshTri:
     )
 
 
-def _basis(mesh: MeshTri, order: int) -> Basis:
+def yielding_basis(mesh: MeshTri, order: int) -> Basis:
     """Of scalar functions, with points of degree 2 order - 1: more would resist plastic flow. Raises BodyTooFine."""
     from skfem import CellBasis
 
@@ -256,6 +256,7 @@ def _basis(mesh: MeshTri, order: int) -> Basis:
     return CellBasis(mesh, element(order), intorder=2 * order - 1)
 
 
-def yielding_of(poisson: float, strength: float, hardening: float) -> Yielding:
-    """For E* = 1; strength and hardening over E*."""
-    return Yielding(*moduli(poisson), strength, hardening)
+def yielding_of(poisson: float, strength: float, hardening: float, modulus: float = 1.0) -> Yielding:
+    """Of a contact modulus E*, and strength and hardening in its unit."""
+    bulk, shear = moduli(poisson)
+    return Yielding(modulus * bulk, modulus * shear, strength, hardening)

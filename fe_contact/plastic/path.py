@@ -48,9 +48,9 @@ class PlasticFlowLost(NotReached):
 class PlasticZoneWide(NotReached):
     """The body flows further from the contact than it may."""
 
-    def __init__(self, depth: float, core: float) -> None:
+    def __init__(self, when: str, core: float) -> None:
         cure = "cure: a lower striker.velocity or mass, or a higher target.material.yield_strength"
-        reason = f"at depth {depth:.3g} m flow reaches {GUARD * core:.2g} contact radii, further than is meshed"
+        reason = f"at {when} flow reaches {GUARD * core:.2g} contact radii, further than is meshed"
         super().__init__(f"{reason}; {cure}")
 
 
@@ -129,7 +129,7 @@ class Presser:
         if not np.isfinite(reached):
             raise MemoryTooSmall(self.unit * scale)
         if not self.ground.contained(after):
-            raise PlasticZoneWide(self.unit * depth, self.ground.core)
+            raise PlasticZoneWide(f"depth {self.unit * depth:.3g} m", self.ground.core)
         return Station(depth, displacement, after, touch.force * scale**2, pressure, reached * scale, scale)
 
     def _count(self, found: Equilibrium, depth: float) -> None:

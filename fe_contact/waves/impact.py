@@ -13,13 +13,16 @@ still short.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from fe_contact.assembly.forms import Array
+from fe_contact.assembly.interior import factorized
 from fe_contact.bodies.pressing import half_width
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
-from fe_contact.dynamics.body import BodyState, undeformed
+from fe_contact.dynamics.body import BodyState, BodyWithMass, undeformed
+from fe_contact.dynamics.flow import Flowed
 from fe_contact.dynamics.march import (
     MOST_WORK,
     Choices,
@@ -123,12 +126,14 @@ def energies(moving: Moving, found: Motion, scene: Scene) -> dict[str, float]:
     """Terms in J at the end. What waves in an endless elastic body hold without a load never comes back: radiated.
 
     Of a viscoelastic one its motion alone is counted so: its strain has still to relax. What a striker that yields
-    holds beside the motion of its centre of mass is stored.
+    holds beside the motion of its centre of mass is stored, and what is locked in where a body has flowed.
     """
     last, waves = found.samples[-1].energies, 0.0
     if moving.endless:
         swift, strained = moving.in_striker(found.final)
         gone = scene.geometry.material.young.is_elastic and left(found.samples[-1])
+        if gone and found.final.flowed is not None:
+            strained += locked(moving.body, found.final.flowed).energy
         waves = last.rigid + last.deformable - swift + (last.strain - strained if gone else 0.0)
     return account(found, scene.reduced_mass, waves)
 
@@ -136,6 +141,7 @@ def energies(moving: Moving, found: Motion, scene: Scene) -> dict[str, float]:
 def account(found: Motion, mass: float, waves: float = 0.0) -> dict[str, float]:
     """Terms in J at the end, of a ``mass``, kg, that moves as what is watched; ``waves`` that never come back."""
     last, out = found.samples[-1].energies, 0.5 * mass * float(found.samples[-1].velocity[0]) ** 2
+    flowed = {} if found.final.flowed is None else {"plastic": last.plastic}
     return balanced({
         "in": last.work,
         "out": out,
@@ -144,7 +150,25 @@ def account(found: Motion, mass: float, waves: float = 0.0) -> dict[str, float]:
         "radiated": last.radiated + waves,
         "contact": last.contact,
         "numerical": last.numerical,
+        **flowed,
     })  # fmt: skip
+
+
+class Locked(NamedTuple):
+    """A body at rest in which something has flowed: elastic ``energy``, J, and how deep the striker then touches, m."""
+
+    energy: float
+    dent: float
+
+
+def locked(body: BodyWithMass, flowed: Flowed) -> Locked:
+    """What is left for ever, once all waves are gone."""
+    stiffness = sum(part.relaxation.equilibrium * part.stiffness for part in body.parts).tocsc()
+    held = np.flatnonzero(stiffness.diagonal() > 0.0)  # a rigid striker is not
+    displacement = np.zeros(body.size)
+    displacement[held] = factorized(stiffness[held][:, held])(flowed.forces[held])
+    strain = 0.5 * float(displacement @ flowed.forces)
+    return Locked(strain + flowed.elastic(displacement), -float(body.pressing.overlap(displacement).max()))
 
 
 def parting(time: Array, force: Array, exponent: float) -> tuple[float, float] | None:

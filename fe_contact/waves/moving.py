@@ -16,6 +16,7 @@ import scipy.sparse as sparse
 from fe_contact.assembly.forms import Array, Basis, Indices, Matrix, vector_dofs
 from fe_contact.assembly.surface import Surface
 from fe_contact.dynamics.body import BodyState, BodyWithMass, Part, Pressing
+from fe_contact.dynamics.flow import Yields
 from fe_contact.dynamics.mass.base import MASSES
 from lumped.scene.scene import Scene
 
@@ -157,12 +158,12 @@ def together(
     )
 
 
-def with_rigid(scene: Scene, side: WaveSide, pressing: Pressing) -> BodyWithMass:
-    """A body and the rigid striker of a scene, the last degree of freedom; ``pressing`` of both."""
+def with_rigid(scene: Scene, side: WaveSide, pressing: Pressing, yields: Yields | None = None) -> BodyWithMass:
+    """A body and the rigid striker of a scene, the last degree of freedom; ``pressing`` and ``yields`` of both."""
     rigid, gravity = np.zeros(side.size + 1), np.zeros(side.size + 1)
     rigid[-1], gravity[-1] = scene.reduced_mass, scene.gravity
     both = side.among(0, 1)
-    return BodyWithMass(both.mass, rigid, both.parts, both.dashpots, gravity, pressing)
+    return BodyWithMass(both.mass, rigid, both.parts, both.dashpots, gravity, pressing, yields)
 
 
 def _among(matrix: Matrix, before: int, after: int) -> Matrix:
@@ -186,9 +187,17 @@ class Moving:
     endless: bool
 
     @classmethod
-    def under(cls, scene: Scene, side: WaveSide, places: Array, areas: Array, highest: float) -> Moving:
+    def under(
+        cls,
+        scene: Scene,
+        side: WaveSide,
+        places: Array,
+        areas: Array,
+        highest: float,
+        yields: Yields | None = None,
+    ) -> Moving:
         """An endless body at rest, points where it may be touched and their areas, under the rigid striker of a scene,
-        of which no place counts as higher than the ``highest``, m.
+        of which no place counts as higher than the ``highest``, m; what of both ``yields``.
         """
         pressing = Pressing(
             push=sparse.block_diag([side.push, [[-1.0]]]).tocsc(),  # into the body, and the striker out of it
@@ -196,7 +205,7 @@ class Moving:
             weights=areas,
             clearance=-np.minimum(scene.profile.height(places), highest),
         )
-        return cls(with_rigid(scene, side, pressing), scene.velocity, places, endless=True)
+        return cls(with_rigid(scene, side, pressing, yields), scene.velocity, places, endless=True)
 
     @property
     def velocity(self) -> Array:

@@ -52,6 +52,21 @@ MANY = 12  # contacts that are expected at most: few bodies come back so often
 MOST_BYTES = 2e9  # work: memory of one march, bytes
 
 
+@dataclass(frozen=True)
+class Usual:
+    """At the default tolerance: elements along every contact radius, times as many at the surface, steps along a
+    contact, penalty.
+    """
+
+    elements: float = ELEMENTS
+    steps: float = STEPS
+    penalty: float = PENALTY
+    finer: float = 1.0
+
+
+USUAL = Usual()
+
+
 def contact_time(scene: Scene, scales: ImpactScales) -> float:
     """Of the estimated impact, s, or all that there is time for."""
     return scales.duration or scene.end_time
@@ -64,25 +79,24 @@ def placed(
     far_radius: float,
     wide: float = 1.0,
     stiff: float = 1.0,
-    usual_steps: float = STEPS,
+    usual: Usual = USUAL,
 ) -> Plan:
     """What ``given`` leaves open for an impact of these scales, on a mesh that ends at ``far_radius``, contact radii.
 
-    ``wide``: the contact radius to be ready for over the estimated one; ``stiff``: the body over a half-space under it;
-    ``usual_steps``: along a contact at the default tolerance.
+    ``wide``: the contact radius to be ready for over the estimated one; ``stiff``: the body over a half-space under it.
     """
     tolerance, duration = float(given.get("tolerance", DEFAULT_TOLERANCE)), contact_time(scene, scales)
     finer, looser = max(1.0, DEFAULT_TOLERANCE / tolerance), min(1.0, DEFAULT_TOLERANCE / tolerance)
-    elements = max(ELEMENTS * looser**LOOSER, FEWEST["elements"])
-    steps = max(usual_steps * looser**LOOSER, FEWEST["steps"])
+    elements = max(usual.elements * looser**LOOSER, FEWEST["elements"])
+    steps = max(usual.steps * looser**LOOSER, FEWEST["steps"])
     peak_share = min(max(scales.peak_time / duration, SOONEST_PEAK), 1.0)
     viscous = min(viscous_share(scene.contact_modulus, peak_share * duration) / MUCH, 1.0)
     chosen = {
         **DEFAULTS,
         "tolerance": tolerance,
         "elements_per_contact": elements * math.sqrt(finer),
-        "finer": 1.0 + (FINER - 1.0) * viscous,
-        "penalty": PENALTY * stiff * (1.0 + (STIFF - 1.0) * viscous),
+        "finer": usual.finer + (FINER - usual.finer) * viscous,
+        "penalty": usual.penalty * stiff * (1.0 + (STIFF - 1.0) * viscous),
         "steps": 4 * math.ceil(steps * math.sqrt(finer) / 4),
         "far_radius": far_radius,
         "contact_radius": wide * scales.contact_radius,

@@ -177,7 +177,6 @@ def plasticity_faults(source: str, model: Model, geometry: Geometry | None, impa
     wrong = [
         (material.yield_strength is None, "target.material.yield_strength", f"missing, in Pa; {state} it is needed"),
         (not elastic, "target.material.law", f"no viscosity {state} in this version; accepted: elastic"),
-        (model.inertia, "model.inertia", f"true: no waves {state} in this version; accepted: false"),
         (model.finite, "model.kinematics", f"finite: no large strains {state} in this version; accepted: small"),
         (impacts > 1, "motion.impacts", f"{impacts}: one impact {state} in this version; accepted: 1"),
         (geometry.striker_material is not None, "striker.material", f"the striker is rigid {state}; leave it out"),

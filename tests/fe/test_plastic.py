@@ -605,7 +605,7 @@ def test_a_core_is_as_wide_as_the_flow_needs_and_no_wider_than_is_meshed(reach: 
     def told(course: Course) -> float:
         tried.append(course.core)
         if course.core < reach:
-            raise PlasticZoneWide(1e-3, course.core)
+            raise PlasticZoneWide("depth 1e-3 m", course.core)
         return course.core
 
     with pytest.raises(PlasticZoneWide, match="13 contact radii") if reach > ground.WIDEST else nullcontext():

@@ -23,14 +23,18 @@ from fe_contact.budget.plan import SPRINGS, Plan
 from fe_contact.dynamics.body import BodyState, Part
 from fe_contact.dynamics.march import march
 from fe_contact.fields import Fields, nodal_stress, subdivided, written
+from fe_contact.plastic.core import YieldingCore
+from fe_contact.plastic.ground import yielding_of
+from fe_contact.plastic.impact import curve_of, pilot
 from fe_contact.settings import RANGES, Given, WaveNumerics
 from fe_contact.waves.balls import Ball, flying
 from fe_contact.waves.impact import choices_of
 from fe_contact.waves.moving import BEYOND, SMALLEST, Flying, Moving, UnitBody, WaveSide
-from fe_contact.waves.plan import SMOOTH_STEPS, SPREAD, STEPS, TRAVEL, contact_time, placed
+from fe_contact.waves.plan import SMOOTH_STEPS, SPREAD, STEPS, TRAVEL, Usual, contact_time, placed
 from fe_contact.waves.targets.base import WaveTarget, too_fast
 from lumped.errors import BadInput, Fault
 from lumped.laws import mdr
+from lumped.laws.mdr import ImpactScales
 from lumped.result.result import Result
 from lumped.scene.geometry import changing_faults
 from lumped.scene.scene import Scene
@@ -39,6 +43,10 @@ NEAREST = 20.0  # contact radii: the far springs' own need
 # Growth of elements into the body, of one along the radius a unit distance: where several contacts follow each other,
 # the later ones begin on what the earlier ones left on its way.
 ONE, SEVERAL = 3.0, 1.5
+# Where a body yields, pressure reaches to the edge of the contact, which then passes every element with a jump of the
+# force: it errs as elements are wide and steps are long.
+YIELDING_TOLERANCE = 1e-2  # default there: tighter ones take minutes
+FIRM = Usual(elements=20.0, steps=400.0, penalty=480.0, finer=2.0)
 LEAST_RESTITUTION = 0.1  # a striker that comes back slower hardly comes back again
 
 
@@ -60,11 +68,29 @@ def plan(scene: Scene, given: Given) -> Plan:
     Raises NotReached where even the row of springs does not come to an end.
     """
     check_compressible(scene)
-    scales = mdr.estimate(scene, SPRINGS)
+    scales = yielding_scales(scene) if scene.model.plasticity else mdr.estimate(scene, SPRINGS)
     longest = _slowest(scene, scales.restitution) * contact_time(scene, scales)
     far_radius = _far_radius(scene, scales.contact_radius, longest)
+    if scene.model.plasticity:
+        return placed(scene, {"tolerance": YIELDING_TOLERANCE, **given}, scales, far_radius, usual=FIRM)
     steps = SMOOTH_STEPS if scene.motion.impacts == 1 else STEPS  # what is left of one contact shakes the next
-    return placed(scene, given, scales, far_radius, usual_steps=steps)
+    return placed(scene, given, scales, far_radius, usual=Usual(steps=steps))
+
+
+def yielding_scales(scene: Scene) -> ImpactScales:
+    """Of an impact on what yields, by a coarse mesh without inertia. Raises NotReached."""
+    still = scene.changed({"model.inertia": False})
+    march = pilot(still).march
+    about = {name: value or 0.0 for name, value in curve_of(march, still).quantities.items()}
+    return ImpactScales(
+        contact_radius=float(march.radius.max()),
+        peak_depth=about["peak_depth"],
+        peak_force=about["peak_force"],
+        peak_time=about["peak_time"],
+        end=float(march.time[-1]),
+        duration=about["duration"],
+        restitution=about["restitution"],
+    )
 
 
 def _slowest(scene: Scene, restitution: float | None) -> float:
@@ -94,7 +120,17 @@ def moving(scene: Scene, numerics: WaveNumerics) -> Moving:
     """The half-space of a scene and its striker, rigid or a ball, at first touch, in SI units."""
     if scene.striker_material is not None:
         return under_ball(scene, numerics)
-    return Moving.under(scene, *side(scene, numerics), BEYOND * numerics.contact_radius)
+    yields = yielding_core(scene, numerics) if scene.model.plasticity else None
+    return Moving.under(scene, *side(scene, numerics), BEYOND * numerics.contact_radius, yields)
+
+
+def yielding_core(scene: Scene, numerics: WaveNumerics) -> YieldingCore:
+    """What may flow in the half-space of a scene that yields."""
+    material, unit = scene.geometry.material, unit_of(scene, numerics)
+    strength, hardening = material.yield_strength, material.hardening_modulus or 0.0
+    assert strength is not None  # see plasticity_faults
+    yielding = yielding_of(material.nu, strength, hardening, material.contact_modulus().glassy)
+    return YieldingCore.of(unit.basis, unit.free, unit.free.size + 1, numerics.contact_radius, yielding)
 
 
 def under_ball(scene: Scene, numerics: WaveNumerics) -> Flying:

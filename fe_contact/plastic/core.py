@@ -1,0 +1,73 @@
+"""The part of a body with inertia that may yield: its points, in numbers of the body in motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from fe_contact.assembly.forms import Array, Basis, Indices
+from fe_contact.dynamics.flow import Flowed
+from fe_contact.plastic.ground import GUARD, WIDEST, at_rest, yielding_basis
+from fe_contact.plastic.path import PlasticZoneWide
+from fe_contact.solids.base import PointAnswer
+from fe_contact.solids.bulk import Bulk, Loaded
+from lumped.materials.plasticity import GRADIENT, OFTEN, Yielding
+
+
+@dataclass(frozen=True, eq=False)
+class YieldingCore:
+    """Elements as material points of a body, SI units; ``bulk`` on N degrees of freedom and one that is held; the
+    ``outer`` ones of them, (e,).
+    """
+
+    bulk: Bulk
+    yielding: Yielding
+    outer: npt.NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, basis: Basis, free: Indices, size: int, unit: float, yielding: Yielding) -> YieldingCore:
+        """Of a mesh in units of ``unit`` m, whose degrees of freedom ``free`` are the first of ``size``."""
+        middles = basis.mesh.p[:, basis.mesh.t].mean(axis=1)
+        distance = np.hypot(middles[0], middles[1])
+        elements = np.flatnonzero(distance < WIDEST)
+        own = Bulk.of(yielding_basis(basis.mesh, basis.elem.maxdeg), False, elements)
+        numbers = np.full(own.size, size)
+        numbers[free] = np.arange(free.size)
+        bulk = replace(
+            own,
+            slopes=own.slopes / unit,
+            weight=own.weight * unit**3,
+            dofs=numbers[own.dofs],
+            size=size + 1,
+        )
+        return cls(bulk, yielding, distance[elements] > GUARD * WIDEST)
+
+    @cached_property
+    def at_rest(self) -> Flowed:
+        """See :class:`fe_contact.dynamics.flow.Yields`."""
+        none = np.zeros(self.bulk.size - 1)
+        return Flowed(*at_rest(self.bulk.weight.shape), none, none, 0.0, 0.0)
+
+    def flowed(self, displacement: Array, before: Flowed) -> Flowed:
+        """See :class:`fe_contact.dynamics.flow.Yields`."""
+        gradient = self.bulk.gradient(np.append(displacement, 0.0))
+        found = self.yielding.flowed(gradient, before.strain, before.amount)
+        twice, weight = 2.0 * self.yielding.shear * found.strain, self.bulk.weight
+        held = Loaded(self.bulk, PointAnswer(twice[GRADIENT], np.zeros((5, 5)), weight))
+        forces = held.forces[:-1]
+        return Flowed(
+            strain=found.strain,
+            amount=found.amount,
+            forces=forces,
+            grew=forces - before.forces,
+            stores=0.5 * float(np.einsum("c,ep,cep,cep->", OFTEN, weight, twice, found.strain)),
+            worked=float(np.vdot(weight, self.yielding.worked(found.amount))),
+        )
+
+    def check(self, flowed: Flowed, time: float) -> None:
+        """See :class:`fe_contact.dynamics.flow.Yields`."""
+        if np.any(flowed.amount[self.outer] > 0.0):
+            raise PlasticZoneWide(f"t = {time:.3g} s", WIDEST)
