@@ -25,7 +25,7 @@ from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer, dominant
 from fe_contact.budget.runs import operations
-from fe_contact.budget.solved import ImpactModel, SolvedBy, record, solved
+from fe_contact.budget.solved import ImpactModel, SolvedBy, dent_left, record, solved
 from fe_contact.budget.variation import Softening, Variation
 from fe_contact.errors import faults_of
 from fe_contact.progress import Progress, silent
@@ -128,7 +128,8 @@ def _of_waves(target: WaveTarget) -> ImpactModel:
         return chosen.tolerance, target.cost(scene, chosen).seconds
 
     def fe(scene: Scene, given: Given, progress: Progress) -> Result:
-        return record(scene, solved(scene, given, progress, plan, target.way))
+        found = solved(scene, given, progress, plan, target.way)
+        return record(scene, found, dent_left(found.certified))
 
     return ImpactModel(check, plan, expected, fe)
 

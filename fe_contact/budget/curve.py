@@ -137,7 +137,7 @@ class Reading:
 class Curve:
     """Mean force since touch (n,), N, depth (n,), m, at ``x`` (n,); squared radius at ``radius_x``; duration and how
     sharply its end can be read, s; energies of the account, J; how sharply peaks can be read, by quantity; when the
-    force peaks, s, where the march knows it.
+    force peaks, s, where the march knows it; the depth, m, that stays for ever in a body that yields.
     """
 
     strike: Strike
@@ -152,6 +152,7 @@ class Curve:
     energy: Energies
     peak_spread: Mapping[str, float] = field(default_factory=dict)
     peaked_at: float | None = None
+    dent: float | None = None
 
     @classmethod
     def of(cls, march: March, strike: Strike) -> Curve:
@@ -169,6 +170,7 @@ class Curve:
             radius_squared=squares,
             end_spread=march.end_spread,
             energy=march.energy,
+            dent=march.dent,
         )
 
     def thinned(self) -> Curve:

@@ -9,10 +9,11 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
-from fe_contact.budget.budget import CAUSES, Solution
+from fe_contact.budget.budget import CAUSES, Budget, Solution
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import ImpactWay, refine
 from fe_contact.budget.several import Row, Several
+from fe_contact.budget.variation import Softening, Variation
 from fe_contact.march.impacts import UNFOLLOWED
 from fe_contact.progress import Count, Progress
 from fe_contact.settings import RANGES, Given
@@ -113,6 +114,22 @@ def record(scene: Scene, solved: SolvedBy[Solution], recovery: IndentationLeft |
         message="; ".join(said),
         recovery=recovery,
     )
+
+
+def dent_left(found: Solution) -> IndentationLeft | None:
+    """What is left for ever of an impact on what yields, with its bar: nothing recovers. None where nothing yields."""
+    if not isinstance(found, Budget) or found.curve.dent is None:
+        return None
+    left = found.curve.dent
+    apart = sum(_apart(change) for causes in found.changes.values() for change in causes)
+    return IndentationLeft(np.zeros(1), np.array([left]), np.array([apart]), left, ())
+
+
+def _apart(change: Variation | Softening | None) -> float:
+    """What a change moves a dent, m; infinite where it failed."""
+    if not isinstance(change, Variation) or change.first.dent is None or change.second.dent is None:
+        return math.inf
+    return change.factor * abs(change.first.dent - change.second.dent)
 
 
 def _missed(scene: Scene, solved: SolvedBy[Solution], found: Solution) -> list[str]:

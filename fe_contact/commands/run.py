@@ -88,7 +88,7 @@ def _write(args: argparse.Namespace, solved: Solved | None, result: Result, fold
 
 def _pressed_again(result: Result) -> PressedAgain | None:
     """The body at the largest force and at the end, where it yields by finite elements."""
-    if result.method != "fe" or not result.model.plasticity:
+    if result.method != "fe" or not result.model.plasticity or result.model.inertia:
         return None
     from fe_contact.plastic.fields import PressedAgain
 

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from fe_contact.assembly.forms import Array, Basis, Indices
 from fe_contact.dynamics.flow import Flowed
+from fe_contact.plastic.fields import at_nodes
 from fe_contact.plastic.ground import GUARD, WIDEST, at_rest, yielding_basis
 from fe_contact.plastic.path import PlasticZoneWide
 from fe_contact.solids.base import PointAnswer
@@ -19,21 +20,21 @@ from lumped.materials.plasticity import GRADIENT, OFTEN, Yielding
 
 @dataclass(frozen=True, eq=False)
 class YieldingCore:
-    """Elements as material points of a body, SI units; ``bulk`` on N degrees of freedom and one that is held; the
-    ``outer`` ones of them, (e,).
+    """The ``elements`` (e,) of a mesh that may yield, as material points, SI units: ``bulk`` on N degrees of freedom of a
+    body in motion and one that is held; ``basis`` of the mesh in units of its own, with these points.
     """
 
     bulk: Bulk
     yielding: Yielding
-    outer: npt.NDArray[np.bool_]
+    basis: Basis
+    elements: Indices
 
     @classmethod
     def of(cls, basis: Basis, free: Indices, size: int, unit: float, yielding: Yielding) -> YieldingCore:
         """Of a mesh in units of ``unit`` m, whose degrees of freedom ``free`` are the first of ``size``."""
-        middles = basis.mesh.p[:, basis.mesh.t].mean(axis=1)
-        distance = np.hypot(middles[0], middles[1])
-        elements = np.flatnonzero(distance < WIDEST)
-        own = Bulk.of(yielding_basis(basis.mesh, basis.elem.maxdeg), False, elements)
+        pointed = yielding_basis(basis.mesh, basis.elem.maxdeg)
+        elements = np.flatnonzero(_distance(pointed) < WIDEST)
+        own = Bulk.of(pointed, False, elements)
         numbers = np.full(own.size, size)
         numbers[free] = np.arange(free.size)
         bulk = replace(
@@ -43,7 +44,7 @@ class YieldingCore:
             dofs=numbers[own.dofs],
             size=size + 1,
         )
-        return cls(bulk, yielding, distance[elements] > GUARD * WIDEST)
+        return cls(bulk, yielding, pointed, elements)
 
     @cached_property
     def at_rest(self) -> Flowed:
@@ -69,5 +70,24 @@ class YieldingCore:
 
     def check(self, flowed: Flowed, time: float) -> None:
         """See :class:`fe_contact.dynamics.flow.Yields`."""
-        if np.any(flowed.amount[self.outer] > 0.0):
+        if np.any(flowed.amount[self._outer] > 0.0):
             raise PlasticZoneWide(f"t = {time:.3g} s", WIDEST)
+
+    @cached_property
+    def _outer(self) -> npt.NDArray[np.bool_]:
+        """Elements so near the end of what may yield that it is too small if they do."""
+        return _distance(self.basis)[self.elements] > GUARD * WIDEST
+
+    def at_nodes(self, flowed: Flowed) -> tuple[Array, Array]:
+        """Stress that plastic strain takes away, (n, 4), Pa, as in :mod:`fe_contact.fields`, and the amount of that,
+        (n,), at all nodes of the mesh; zero where nothing may yield.
+        """
+        held = 2.0 * self.yielding.shear * flowed.strain[[0, 2, 3, 1]]  # rr, zz, hoop, rz
+        *taken, amount = at_nodes(self.basis, self.elements, np.concatenate([held, flowed.amount[None]]))
+        return np.stack(taken, axis=1), np.maximum(amount, 0.0)
+
+
+def _distance(basis: Basis) -> Array:
+    """Of every element's middle from the first touch."""
+    middles = basis.mesh.p[:, basis.mesh.t].mean(axis=1)
+    return np.hypot(middles[0], middles[1])

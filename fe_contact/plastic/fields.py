@@ -80,7 +80,7 @@ class PressedAgain:
         basis, nodes = ground.basis, self._nodes
         gradient = ground.encounter.body.core.gradient(peak.displacement)
         stress = ground.yielding.flowed(gradient, *peak.state).stress[STRESS]
-        *stresses, amount = _at_nodes(basis, ground.elements, np.concatenate([stress, peak.state[1][None]]))
+        *stresses, amount = at_nodes(basis, ground.elements, np.concatenate([stress, peak.state[1][None]]))
         triangles = subdivided(basis).reshape(basis.nelems, -1, 3)[ground.elements].reshape(-1, 3)
         place = basis.doflocs[:, nodes].T
         touching = (place[:, 1] == 0.0) & (peak.scale * place[:, 0] <= peak.radius)
@@ -104,7 +104,7 @@ class PressedAgain:
         return written(fields, where, {"plastic_strain": amount})
 
 
-def _at_nodes(basis: Basis, elements: Indices, values: Array) -> Array:
+def at_nodes(basis: Basis, elements: Indices, values: Array) -> Array:
     """Values (k, e, points) of some elements at all nodes (k, N); zero where there is none."""
     inside = np.column_stack([np.ones(basis.X.shape[1]), basis.X.T])
     corners = np.column_stack([np.ones(len(basis.elem.doflocs)), basis.elem.doflocs])

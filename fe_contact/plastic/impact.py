@@ -19,7 +19,7 @@ from fe_contact.budget.budget import CAUSES, Budget, TotalWork, shares_of
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer
-from fe_contact.budget.solved import ImpactModel, record, solved
+from fe_contact.budget.solved import ImpactModel, dent_left, record, solved
 from fe_contact.budget.variation import SAFETY, Variation
 from fe_contact.errors import MemoryTooSmall
 from fe_contact.march.impact import balanced
@@ -44,7 +44,7 @@ from fe_contact.steppers.steps import March, Strike, Work
 from lumped.errors import BadInput, Fault, NotReached
 from lumped.progress import step_done
 from lumped.result.model_ledger import Peak, model_ledger
-from lumped.result.result import IndentationLeft, LedgerEntry, Result, meets
+from lumped.result.result import LedgerEntry, Result, meets
 from lumped.scene.scene import Scene
 
 # Processor time, s, of an impact at so loose a tolerance, about, and the power that it follows a tighter one with.
@@ -213,6 +213,7 @@ class Rebound:
             energy=self._account(deepest - sprung, float(outward.speed[-1])),
             end_spread=0.0,
             work=work,
+            dent=float(going[-1]),
         )
 
     def _account(self, left: float, speed: float) -> dict[str, float]:
@@ -401,17 +402,6 @@ def curve_of(march: March, scene: Scene) -> Curve:
     return replace(Curve.of(march, Strike.of(scene)), peaked_at=float(march.time[march.depth.argmax()]))
 
 
-def dent(found: Budget) -> IndentationLeft:
-    """What is left for ever, with its bar: nothing recovers."""
-    left = found.curve.depth[-1:]
-    apart = [_left(change) for causes in found.changes.values() for change in causes if isinstance(change, Variation)]
-    return IndentationLeft(np.zeros(1), left, np.array([sum(apart)]), float(left[0]), ())
-
-
-def _left(one: Variation) -> float:
-    return one.factor * abs(float(one.first.depth[-1] - one.second.depth[-1]))
-
-
 def plan(scene: Scene, given: Given) -> Plan:
     """Settings and ledger, by a coarse run. Raises NotReached."""
     check(scene, given)
@@ -444,7 +434,7 @@ def expected(scene: Scene, given: Given) -> tuple[float, float]:
 def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
     """Force history, error bars and the indentation left for ever. Raises NotReached."""
     found = solved(scene, given, progress, plan, Striking.of)
-    return record(scene, found, dent(found.certified))
+    return record(scene, found, dent_left(found.certified))
 
 
 YIELDING = ImpactModel(check, plan, expected, fe)

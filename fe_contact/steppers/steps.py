@@ -104,7 +104,8 @@ class March:
     ``time``, ``depth``, ``impulse`` (n,) at the ends of the steps, the first row at touch, the last at
     separation or ``end_time``; ``first_force``, N, right at touch; ``radius_time``, ``radius`` (n,) of the contact;
     ``photograph`` makes a snapshot a step; ``energy`` J, each term computed on its own; ``end_spread`` s, how far
-    the last predictions of the separation lie apart; ``memory`` of the body after the last step, at ``memory_time``, s.
+    the last predictions of the separation lie apart; ``memory`` of the body after the last step, at ``memory_time``, s;
+    ``dent``: the depth, m, that stays for ever in a body that yields.
     """
 
     time: Array
@@ -120,6 +121,7 @@ class March:
     work: Work
     memory: Memory = None
     memory_time: float = 0.0
+    dent: float | None = None
 
     @cached_property
     def snapshots(self) -> tuple[Snapshot, ...]:

@@ -64,6 +64,8 @@ GROWTH = {
     "far_field": Growth(ORDER["far_field"], step=2.0, most=4.0, work=0.3),
 }
 
+FLOWING = 5.0  # times the work of a step in which something flows: ten solutions, most of it beside the factors
+
 Body = Callable[[Scene, WaveNumerics], Moving]
 Units = Callable[[Scene, WaveNumerics], Sequence[UnitBody]]
 Costs = Callable[[Scene, WaveNumerics], Cost]
@@ -274,4 +276,5 @@ class Waves:
 def cost_of(scene: Scene, numerics: WaveNumerics, units: Units) -> Cost:
     """What one error budget costs with these settings. Raises BodyTooFine."""
     own, judging = (sum(unit.unknowns for unit in units(scene, one)) for one in (numerics, tells_of_mesh(numerics)[0]))
-    return Cost.of(own, numerics, scene.motion.impacts, judging if judging > own else 0)
+    found = Cost.of(own, numerics, scene.motion.impacts, judging if judging > own else 0)
+    return replace(found, work=FLOWING * found.work) if scene.model.plasticity else found

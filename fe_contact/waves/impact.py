@@ -88,7 +88,8 @@ def left(sample: Sample, slow: float = 0.0) -> bool:
 
 def record(moving: Moving, found: Motion, scene: Scene) -> March:
     """The history from touch to separation as of any march; forces are what the striker's momentum says."""
-    (_, last), separated = found.seen[-1], left(found.samples[-1])
+    (_, last), separated, flowed = found.seen[-1], left(found.samples[-1]), found.final.flowed
+    rest = locked(moving.body, flowed) if separated and flowed is not None else None
     pressed = found.samples[:-1] if separated else found.samples
     end, spread = pressed[-1].time, 0.0
     if separated:  # where too few steps tell when, it is the last touch, known to a step
@@ -108,10 +109,11 @@ def record(moving: Moving, found: Motion, scene: Scene) -> March:
         radius=np.array([_radius(moving, s) for s in touched]),
         separated=separated,
         photograph=tuple,
-        energy=energies(moving, found, scene),
+        energy=energies(moving, found, scene, rest),
         end_spread=spread,
         first_force=0.0,
         work=Work(len(found.samples) - 1, len(found.samples) - 1, sum(s.iterations for s in found.samples)),
+        dent=None if rest is None else rest.dent,
     )
 
 
@@ -122,19 +124,18 @@ def _radius(moving: Moving, sample: Sample) -> float:
     return radius
 
 
-def energies(moving: Moving, found: Motion, scene: Scene) -> dict[str, float]:
+def energies(moving: Moving, found: Motion, scene: Scene, rest: Locked | None = None) -> dict[str, float]:
     """Terms in J at the end. What waves in an endless elastic body hold without a load never comes back: radiated.
 
     Of a viscoelastic one its motion alone is counted so: its strain has still to relax. What a striker that yields
-    holds beside the motion of its centre of mass is stored, and what is locked in where a body has flowed.
+    holds beside the motion of its centre of mass is stored, and what stays at ``rest`` where a body has flowed.
     """
     last, waves = found.samples[-1].energies, 0.0
     if moving.endless:
         swift, strained = moving.in_striker(found.final)
         gone = scene.geometry.material.young.is_elastic and left(found.samples[-1])
-        if gone and found.final.flowed is not None:
-            strained += locked(moving.body, found.final.flowed).energy
-        waves = last.rigid + last.deformable - swift + (last.strain - strained if gone else 0.0)
+        stays = strained if rest is None else rest.energy
+        waves = last.rigid + last.deformable - swift + (last.strain - stays if gone else 0.0)
     return account(found, scene.reduced_mass, waves)
 
 

@@ -142,7 +142,7 @@ def inertia(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
         refused.append("a dashpot in parallel has no wave speed")
     if scene.motion.impacts > 1 and scene.target.rings_on(geometry.shape):
         refused.append("what rings on between contacts is followed in one impact")
-    built = scene.target.waves_under(geometry.shape) and not (model.finite or model.plasticity or refused)
+    built = scene.target.waves_under(geometry.shape) and not (model.finite or refused)
     said = "; ".join([note, *refused])
     return LedgerEntry(effect, "neglected", estimate, said, "model.inertia" if built else "", value=built or None)
 

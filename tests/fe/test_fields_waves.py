@@ -24,7 +24,8 @@ def half_way(scene: Scene, share: float) -> tuple[Fields, np.ndarray, WaveNumeri
     """The fields at a share of the contact."""
     numerics = half_space.plan(scene, QUICK).numerics
     assert isinstance(numerics, WaveNumerics)
-    fields, velocity = fields_at(scene, numerics, share * numerics.contact_time)
+    fields, more = fields_at(scene, numerics, share * numerics.contact_time)
+    velocity = more["velocity"]
     return fields, velocity, numerics
 
 

@@ -190,12 +190,14 @@ def write_fields(scene: Scene, result: Result, where: Path) -> Path:
     Of several contacts the first is shown.
     """
     peak_time = result.contacts[0]["peak_time"] if result.contacts else result.quantities["peak_time"].value
-    fields, velocity = fields_at(scene, WaveNumerics(**result.numerics), peak_time or 0.0)
-    return written(fields, where, {"velocity": velocity})
+    fields, more = fields_at(scene, WaveNumerics(**result.numerics), peak_time or 0.0)
+    return written(fields, where, more)
 
 
-def fields_at(scene: Scene, numerics: WaveNumerics, time: float) -> tuple[Fields, Array]:
-    """The fields at a time, s, to the next step, and the velocity of the points (n, 2), m/s. Raises NotReached."""
+def fields_at(scene: Scene, numerics: WaveNumerics, time: float) -> tuple[Fields, dict[str, Array]]:
+    """The fields at a time, s, to the next step, the velocity of the points (n, 2), m/s, and, of a body that yields,
+    the amount of their plastic strain (n,). Raises NotReached.
+    """
     body, unit, a = moving(scene, numerics), unit_of(scene, numerics), numerics.contact_radius
     state = march(body.body, body.velocity, choices_of(scene, numerics), time, body.watch).final
     points = a * unit.basis.doflocs.T
@@ -204,6 +206,11 @@ def fields_at(scene: Scene, numerics: WaveNumerics, time: float) -> tuple[Fields
     radius = float(body.places[state.signed_pressure > 0.0].max(initial=0.0))
     poisson = scene.geometry.material.nu
     law = isotropic(1 - poisson**2, poisson)  # of E* = 1
+    more = {"velocity": unit.everywhere(state.velocity).reshape(-1, 2)}
+    stress = nodal_stress(unit.basis, unit.everywhere(_stressed(body, state)) / a, law)
+    if state.flowed is not None:
+        taken, more["plastic_strain"] = yielding_core(scene, numerics).at_nodes(state.flowed)
+        stress = stress - taken
     found = Fields(
         time=state.time,
         depth=float(state.displacement[-1]),
@@ -211,11 +218,11 @@ def fields_at(scene: Scene, numerics: WaveNumerics, time: float) -> tuple[Fields
         points=points,
         triangles=subdivided(unit.basis),
         displacement=unit.everywhere(state.displacement).reshape(-1, 2),
-        stress=nodal_stress(unit.basis, unit.everywhere(_stressed(body, state)) / a, law),
+        stress=stress,
         pressure=pressure,
         contact=(surface & (points[:, 0] <= radius)).astype(np.int64),
     )
-    return found, unit.everywhere(state.velocity).reshape(-1, 2)
+    return found, more
 
 
 def _stressed(moving: Moving, state: BodyState) -> Array:
