@@ -64,7 +64,8 @@ class Moment(NamedTuple):
 
 class Sample(NamedTuple):
     """What one step leaves behind, at its end: s, N, the step's share of the impulse, N s; overlaps, their rates and
-    signed pressures (q,); displacement and velocity of the watched places (k,), energies, Newton iterations.
+    signed pressures (q,); displacement and velocity of the watched places (k,), energies, Newton iterations, contact
+    ``problems``: more than one where flow is found together with the motion.
     """
 
     time: float
@@ -77,6 +78,7 @@ class Sample(NamedTuple):
     velocity: Array
     energies: Energies
     iterations: int
+    problems: int = 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,7 +199,7 @@ def onwards(
         length = choices.length(state.time - start) / parts
         if length != stepper.step:
             stepper = steppers.of(scheme, length)
-        impulse, iterations = 0.0, 0
+        impulse, iterations, problems = 0.0, 0, 1
         for _ in range(parts):
             before = state
             state, found = stepper.advance(before)
@@ -206,7 +208,8 @@ def onwards(
             energies = account_after(energies, stepper, before, state)
             impulse += _impulse(body, before, state)
             iterations += found.iterations
-        samples.append(_sample(body, state, impulse, watch, energies, iterations))
+            problems = max(problems, found.problems)
+        samples.append(_sample(body, state, impulse, watch, energies, iterations, problems))
         counted(1.0)
         if finished(samples[-1]):
             break
@@ -219,7 +222,13 @@ def _impulse(body: BodyWithMass, before: BodyState, after: BodyState) -> float:
 
 
 def _sample(
-    body: BodyWithMass, state: BodyState, impulse: float, watch: Array, energies: Energies, iterations: int
+    body: BodyWithMass,
+    state: BodyState,
+    impulse: float,
+    watch: Array,
+    energies: Energies,
+    iterations: int,
+    problems: int = 1,
 ) -> Sample:
     return Sample(
         time=state.time,
@@ -232,6 +241,7 @@ def _sample(
         velocity=watch @ state.velocity,
         energies=energies,
         iterations=iterations,
+        problems=problems,
     )
 
 

@@ -70,10 +70,11 @@ class Enforced:
 
 
 class Found(NamedTuple):
-    """Signed pressure (q,), negative where open, and Newton iterations."""
+    """Signed pressure (q,), negative where open, Newton iterations and contact ``problems`` solved for it."""
 
     signed_pressure: Array
     iterations: int
+    problems: int = 1
 
     @property
     def pressure(self) -> Array:
@@ -139,13 +140,16 @@ class ImplicitStepper:
             change, found = self._pressed(state, self._free(state))
             return self._moved(state, change, found), found
         free, before, late = self._free(state), state.flowed, 1 - self.scheme.alpha_f
+        tried = list[Found]()
 
-        def under(held: Array) -> tuple[Array, tuple[Array, Found]]:
+        def under(held: Array) -> tuple[Array, Array]:
             change, found = self._pressed(state, free + self.solve(late * (held - before.forces)))
-            return state.displacement + change, (change, found)
+            tried.append(found)
+            return state.displacement + change, change
 
-        flowed, (change, found) = settled(under, self.body.yields, before, state.time)
-        return self._moved(state, change, found)._replace(flowed=flowed), found
+        flowed, change = settled(under, self.body.yields, before, state.time)
+        last = Found(tried[-1].signed_pressure, sum(found.iterations for found in tried), len(tried))
+        return self._moved(state, change, last)._replace(flowed=flowed), last
 
     def _pressed(self, state: BodyState, change: Array) -> tuple[Array, Found]:
         """The increment (N,) with new pressure, of one without; raises ContactNotSettled."""

@@ -20,8 +20,8 @@ from lumped.materials.plasticity import GRADIENT, OFTEN, Yielding
 
 @dataclass(frozen=True, eq=False)
 class YieldingCore:
-    """The ``elements`` (e,) of a mesh that may yield, as material points, SI units: ``bulk`` on N degrees of freedom of a
-    body in motion and one that is held; ``basis`` of the mesh in units of its own, with these points.
+    """The ``elements`` (e,) of a mesh that may yield, as material points, SI units: ``bulk`` on N degrees of freedom of
+    a body in motion and one that is held; ``basis`` of the mesh in units of its own, with these points.
     """
 
     bulk: Bulk
@@ -49,8 +49,8 @@ class YieldingCore:
     @cached_property
     def at_rest(self) -> Flowed:
         """See :class:`fe_contact.dynamics.flow.Yields`."""
-        none = np.zeros(self.bulk.size - 1)
-        return Flowed(*at_rest(self.bulk.weight.shape), none, none, 0.0, 0.0)
+        none, (strain, amount) = np.zeros(self.bulk.size - 1), at_rest(self.bulk.weight.shape)
+        return Flowed(strain, amount, forces=none, grew=none, stores=0.0, worked=0.0)
 
     def flowed(self, displacement: Array, before: Flowed) -> Flowed:
         """See :class:`fe_contact.dynamics.flow.Yields`."""
@@ -90,4 +90,4 @@ class YieldingCore:
 def _distance(basis: Basis) -> Array:
     """Of every element's middle from the first touch."""
     middles = basis.mesh.p[:, basis.mesh.t].mean(axis=1)
-    return np.hypot(middles[0], middles[1])
+    return np.asarray(np.hypot(middles[0], middles[1]))

@@ -121,14 +121,16 @@ class WaveRuns(AnyRuns[WaveNumerics]):
         return float(sum(run.size * run.steps for run in self._runs.values()))
 
     def work(self) -> TotalWork:
-        """What all runs cost together: a factorisation for every length of step, one back-substitution a step."""
+        """What all runs cost together: a factorisation for every length of step, a back-substitution for every contact
+        problem and every step of a flight.
+        """
         runs = list(self._runs.values())
         marches = [one.march.work for run in runs for one in run.followed.contacts]
         return TotalWork.of(
             marches,
             degrees_of_freedom=max(run.size for run in runs),
             factorizations=sum(run.factorizations for run in runs),
-            solves=sum(run.steps for run in runs),
+            solves=sum(run.flown for run in runs) + sum(march.contact_problems for march in marches),
             flown=sum(run.flown for run in runs),
         )
 

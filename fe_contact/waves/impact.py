@@ -112,7 +112,11 @@ def record(moving: Moving, found: Motion, scene: Scene) -> March:
         energy=energies(moving, found, scene, rest),
         end_spread=spread,
         first_force=0.0,
-        work=Work(len(found.samples) - 1, len(found.samples) - 1, sum(s.iterations for s in found.samples)),
+        work=Work(
+            len(found.samples) - 1,
+            sum(sample.problems for sample in found.samples[1:]),
+            sum(sample.iterations for sample in found.samples),
+        ),
         dent=None if rest is None else rest.dent,
     )
 
