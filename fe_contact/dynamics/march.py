@@ -286,9 +286,9 @@ class Energies(NamedTuple):
     strain: float
     contact: float
     viscous: float
-    plastic: float
     radiated: float
     numerical: float
+    plastic: float = 0.0
 
     @property
     def total(self) -> float:
@@ -304,7 +304,7 @@ class Energies(NamedTuple):
 def account_at_start(body: BodyWithMass, state: BodyState) -> Energies:
     """The account of energy of a body about to move."""
     standing = _standing(body, state)
-    return Energies(sum(standing), *standing, 0.0, 0.0, 0.0, 0.0)
+    return Energies(sum(standing), *standing, 0.0, 0.0, 0.0)
 
 
 def account_after(
@@ -324,9 +324,9 @@ def account_after(
         account.work + float(body.weight @ change),
         *standing,
         account.viscous + sum(heats),
-        0.0 if after.flowed is None else after.flowed.worked,
         account.radiated + _radiated(body, before, after, step, change),
         account.numerical + numerical + pressed,
+        0.0 if after.flowed is None else after.flowed.worked,
     )
 
 

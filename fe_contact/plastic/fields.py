@@ -1,7 +1,8 @@
 """Fields of a half-space that yields at the largest force, and the indentation left: its finest mesh once more.
 
-Stress and plastic strain live at the points of the elements: in each they are read by the plane nearest to them, and a
-node takes the mean of its elements. The fields end where nothing may yield, eight or sixteen contact radii away.
+Stress and plastic strain live at the points of the elements: in each they are read by the polynomial nearest to them,
+of the degree of strains, and a node takes the mean of its elements. The fields end where nothing may yield, eight or
+sixteen contact radii away.
 """
 
 from __future__ import annotations
@@ -106,9 +107,14 @@ class PressedAgain:
 
 def at_nodes(basis: Basis, elements: Indices, values: Array) -> Array:
     """Values (k, e, points) of some elements at all nodes (k, N); zero where there is none."""
-    inside = np.column_stack([np.ones(basis.X.shape[1]), basis.X.T])
-    corners = np.column_stack([np.ones(len(basis.elem.doflocs)), basis.elem.doflocs])
-    local = values @ (corners @ np.linalg.pinv(inside)).T
+    degree = max(basis.elem.maxdeg - 1, 1)  # that of strains
+    local = values @ (_monomials(basis.elem.doflocs, degree) @ np.linalg.pinv(_monomials(basis.X.T, degree))).T
     dofs = basis.element_dofs[:, elements].T.ravel()
     shared = np.maximum(np.bincount(dofs, minlength=basis.N), 1)
     return np.stack([np.bincount(dofs, part.ravel(), basis.N) for part in local]) / shared
+
+
+def _monomials(places: Array, degree: int) -> Array:
+    """Of coordinates (n, 2), up to a degree, (n, m)."""
+    x, y = places.T
+    return np.stack([x**i * y**j for i in range(degree + 1) for j in range(degree + 1 - i)], axis=1)

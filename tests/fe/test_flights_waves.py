@@ -31,6 +31,7 @@ penalty = ENFORCEMENTS.get("penalty")
 STEP, PATIENCE = 0.02, 32
 RELAXATION = Relaxation(1.0, (0.7,), (5.0,))
 DRAWS = 30
+HARD: Any = SimpleNamespace(flowed=None)  # the end of what has not yielded
 
 
 class Case:
@@ -344,8 +345,7 @@ def bounced(mass: float, velocity: float, gravity: float, step: float) -> tuple[
         return Sample(time, force, force * step, here, np.array([fast]), signed, here, np.array([fast]), energies, 1)
 
     samples = tuple(at(step * n) for n in range(math.ceil(end / step) + 1))
-    final: Any = None
-    return Motion(samples, final, 1), end
+    return Motion(samples, HARD, 1), end
 
 
 def test_a_striker_that_leaves_between_two_steps_has_left_where_and_as_fast_as_it_did() -> None:
@@ -425,7 +425,7 @@ def test_one_of_several_contacts_that_swings_for_long_is_given_up_and_any_other_
         given.append(until)
         samples = tuple(one._replace(time=one.time + touched) for one in whole.samples if one.time <= until + 1e-9)
         assert [ending(one) for one in samples] == [impact.left(one) for one in samples]
-        final: Any = SimpleNamespace(time=samples[-1].time)
+        final: Any = SimpleNamespace(time=samples[-1].time, flowed=None)
         return Motion(samples, final, 1)
 
     monkeypatch.setattr(impact, "onwards", onwards)
@@ -460,7 +460,7 @@ def test_energy_at_the_end_is_what_goes_in_less_what_is_told_and_nothing_is_radi
     held = Energies(2.0, 0.4, 0.03, 0.2, 0.01, 0.05, 0.1, 0.002)
     last = Sample(1.0, 0.0, 0.0, none, here, none, none, here, held, 1)
     first = last._replace(velocity=np.array([7.0]), energies=Energies(*8 * [9.0]))
-    found = Motion((first, last), cast("Any", None), 1)
+    found = Motion((first, last), HARD, 1)
     lost = {name: getattr(held, name) for name in ("viscous", "radiated", "contact", "numerical")}
     out = 0.5 * 3.0 * 0.5**2
     stored = held.rigid + held.deformable + held.strain - out
@@ -482,7 +482,7 @@ def test_what_moves_in_an_endless_body_is_radiated_and_its_strain_with_it_once_n
     here, none = np.array([-0.9 if gone else 0.9]), np.zeros(1)
     last = Sample(1.0, 0.0 if gone else 3.0, 0.0, none, -here, none, none, here, held, 1)
     body: Any = SimpleNamespace(endless=endless, in_striker=lambda state: (out + swinging, springs))
-    found = Motion((last,), cast("Any", None), 1)
+    found = Motion((last,), HARD, 1)
     material = SimpleNamespace(young=SimpleNamespace(is_elastic=elastic))
     scene: Any = SimpleNamespace(reduced_mass=mass, geometry=SimpleNamespace(material=material))
     energy = impact.energies(body, found, scene)
