@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
@@ -14,7 +14,7 @@ from lumped.laws._assembly import Answer, assemble, bars, values_of, wider
 from lumped.laws.base import LawKind, check_geometry, check_half_space, waves
 from lumped.numbers import Array, Clock, local, peak
 from lumped.result.history import End
-from lumped.result.result import Result, largest_bar, meets
+from lumped.result.result import Quantity, Result, largest_bar, meets
 from lumped.scene.scene import Scene
 from lumped.solvers.mdr.nest import (
     Level,
@@ -96,13 +96,7 @@ class SpringRow:
             levels.append(level)
             limits.append(limit(levels[-2], levels[-1], 2))
             if len(limits) > 1:
-                answer = _answer(scene, limit(limits[-2], limits[-1], 4), again)
-                quantities, force_error = bars(answer, _answer(scene, limits[-2], again), SAFETY)
-                # Steps cut by an end that no whole step follows err by no even power: limits may gain nothing on the
-                # finest march. The one before it errs about four times as much.
-                if any(level.within_step for level in levels[-3:]):
-                    others, least = bars(answer, _answer(scene, levels[-2], again), 1.0)
-                    quantities, force_error = wider(quantities, others), max(force_error, least)
+                answer, quantities, force_error = _judged(scene, levels[-3:], limits[-2:], again)
                 widest.append(largest_bar(quantities))
                 known = (quantities["history_l2"].error or 0.0) <= tolerance
                 if meets(quantities, tolerance) or (known and _stalled(widest)):
@@ -140,6 +134,44 @@ def estimate(scene: Scene, elements: int = 70) -> ImpactScales:
         duration=float(time[-1]) if separated else None,
         restitution=float(-velocity[-1]) / scene.velocity if separated else None,
     )
+
+
+def _judged(
+    scene: Scene, levels: Sequence[Level], limits: Sequence[Level], again: bool
+) -> tuple[Answer, dict[str, Quantity], float]:
+    """The answer of three marches and their two limits, its quantities with bars, and the bar of the force, N."""
+    answer = _answer(scene, limit(limits[0], limits[1], 4), again)
+    quantities, force_error = bars(answer, _answer(scene, limits[0], again), SAFETY)
+    marches = [_answer(scene, level, again) for level in levels]
+    quantities = wider(quantities, _without_order(quantities, [march.values for march in marches]))
+    # Steps cut by an end that no whole step follows err by no even power: limits may gain nothing on the
+    # finest march. The one before it errs about four times as much.
+    if any(level.within_step for level in levels):
+        others, least = bars(answer, marches[1], 1.0)
+        quantities, force_error = wider(quantities, others), max(force_error, least)
+    return answer, quantities, force_error
+
+
+def _without_order(
+    quantities: Mapping[str, Quantity], marches: Sequence[Mapping[str, float | None]]
+) -> dict[str, Quantity]:
+    """The quantities with bars for what three marches do not tell by h^2 yet, finer and finer by halves.
+
+    A peak between coarse rows may err by no power, and two limits then agree by chance. Where marches err by h^2, the
+    first two differ four times as much as the last two. The share by which they do not, squared because limits take
+    away two orders, is what the answer may still have of the finest march's error. This error is how far that march is
+    from the answer, or a fourth of how far the one before is.
+    """
+    found = dict(quantities)
+    for name, first in marches[0].items():
+        value, second, third = quantities[name].value, marches[1][name], marches[2][name]
+        if value is None or first is None or second is None or third is None:
+            continue
+        error = max(abs(third - value), abs(second - value) / 4.0)
+        earlier, expected = first - second, 4.0 * (second - third)
+        share = min(abs(earlier - expected) / abs(expected), 1.0) if expected else 1.0
+        found[name] = replace(quantities[name], error=SAFETY * share**2 * error)
+    return found
 
 
 def _stalled(widest: Sequence[float]) -> bool:

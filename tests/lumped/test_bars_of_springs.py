@@ -8,10 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lumped import Result, Scene, laws, simulate
+from lumped import Quantity, Result, Scene, laws, simulate
 
 CASES = 250
 EXACT = 1e-8
+# The bar of the peak may be this much too wide in the median.
+WIDE = 100.0
 
 
 def striker(rng: np.random.Generator) -> dict[str, Any]:
@@ -55,7 +57,7 @@ def test_every_bar_covers(
     tolerance: float, campaign_size: Callable[[int], int], uncovered: Callable[..., dict[str, float]]
 ) -> None:
     rng = np.random.default_rng(41)
-    converged = []
+    converged, wide = [], []
     for _ in range(campaign_size(CASES)):
         target = {"shape": "half_space", "material": material(rng)}
         scene = Scene.from_dict({"name": "row", "striker": striker(rng), "target": target})
@@ -64,7 +66,46 @@ def test_every_bar_covers(
         exact = simulate(laws.ting.of(scene), scene, EXACT)
         assert not uncovered(found, exact), scene
         assert force_over_bars(found, exact) <= 1.0, scene
+        peak, true = found.quantities["peak_force"], exact.quantities["peak_force"]
+        wide.append(peak.error / max(abs(peak.value - true.value), true.error))
     assert np.mean(converged) >= 0.95
+    assert np.median(wide) < WIDE
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3])
+def test_a_peak_which_two_limits_tell_alike_by_chance_has_a_true_bar(
+    tolerance: float, uncovered: Callable[..., dict[str, float]]
+) -> None:
+    """It lies between two rows of three coarse marches, which err by no power of their steps there."""
+    branches = {"E": [1.64128e8, 1.2266e6, 8.8332e6], "tau": [1.46509e-4, 9.65383e-4, 2.918918e-3]}
+    profile = {"shape": "power", "coefficient": 1.50978, "exponent": 1.5}
+    relaxing = {"law": "prony", "E_inf": 2.7084e7, **branches, "nu": 0.248947}
+    scene = Scene.from_dict(
+        {
+            "name": "chance",
+            "striker": profile | {"mass": 15.577, "velocity": 0.43163},
+            "target": {"shape": "half_space", "material": relaxing},
+            "motion": {"end_time": 8.937016e-3},
+        }
+    )
+    found, exact = simulate(laws.mdr.of(scene), scene, tolerance), simulate(laws.ting.of(scene), scene, EXACT)
+    assert not uncovered(found, exact)
+
+
+@pytest.mark.parametrize(
+    ("errors", "off"),
+    [((16.0, 4.0, 1.0), 0.0), ((4.5, 1.5, 0.5), 0.25), ((-3.0, 1.0, 1.0), 1.0), ((7.0, 1.0, -1.0), 0.25)],
+)
+def test_marches_which_err_by_h2_add_nothing_to_a_bar_and_others_what_they_still_lack(
+    errors: tuple[float, float, float], off: float
+) -> None:
+    """Squared, the share by which their differences are off four to one; all of it at most."""
+    told = Quantity(5.0, 1e-9, "N")
+    marches = [{"peak_force": 5.0 + error, "duration": None} for error in errors]
+    found = laws.mdr._without_order({"peak_force": told, "duration": Quantity(None, None, "s")}, marches)
+    finest = max(abs(errors[2]), 0.25 * abs(errors[1]))
+    assert found["peak_force"].error == pytest.approx(laws.mdr.SAFETY * off**2 * finest, abs=1e-15)
+    assert found["duration"].error is None
 
 
 @pytest.mark.tenth
