@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from types import SimpleNamespace
@@ -17,6 +18,7 @@ from lumped.laws._hereditary import once
 from lumped.result.history import End
 from lumped.scene.tables import LawChoice
 from lumped.shapes.power import PowerProfile
+from lumped.solvers.point import contact
 from lumped.solvers.point.bodies import Bodies, PointLaw, Stage, State
 from lumped.targets.layer import Layer
 
@@ -97,6 +99,28 @@ def test_a_weight_at_rest_is_followed_until_any_time() -> None:
         assert result.history.force[-1] == pytest.approx(scene.mass * scene.gravity, rel=1e-6)
         work.append(result.work["force_evaluations"])
     assert max(work) < 10 * work[0]
+
+
+def test_a_weight_that_swings_for_ever_is_followed_to_the_time_that_its_failure_names(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A loop of two stiffnesses far apart soon yields no more: then it swings by the stiffer one and loses nothing."""
+    monkeypatch.setattr(contact, "MOST_TURNS", 300)
+    mass, velocity, gravity, k1 = 17.5, 5.12, 100.0, 2.97e8
+    loop = {"k1": k1, "k2": k1 / 23000.0, "yield_depth": 8.4e-6}
+    scene = Scene(None, mass, velocity, law=LawChoice("impact_bilinear", loop), model=Model(gravity=gravity))
+    law = laws.get("impact_bilinear").of(scene)
+    with pytest.raises(TooManySteps, match="turns without separation") as failure:
+        law.simulate(scene, 1e-3)
+    cure = re.search(r"motion\.end_time of at most (\S+) s", str(failure.value))
+    assert cure
+    result = law.simulate(replace(scene, motion=Motion(end_time=float(cure[1]))), 1e-3)
+    assert result.converged
+    assert result.message == End.TIME.value
+    late = result.history.time > 0.5 * result.history.time[-1]
+    assert np.ptp(result.history.depth[late]) < loop["yield_depth"]
+    swing = 2.0 * np.pi * np.sqrt(mass / k1)
+    assert result.history.time[-1] > 120.0 * swing, "two turns a swing, but for a fifth at most"
 
 
 def test_a_weight_that_breaks_through_its_layer_is_named() -> None:

@@ -19,6 +19,7 @@ from lumped.solvers.radau import STAGES
 
 EXITS = ("exit", "let go")  # the events that end a contact
 MOST_TURNS = 2000  # work: phases of one contact, each until a turn or a corner of the law
+SOONER = 0.9  # safety: of the time that they reach, less what two digits round
 # Of the velocity at touch: what leaves so slowly creeps back for ever, but for rounding.
 FAINTEST_EXIT = 1e-20
 # Contacts whose velocity at touch is below this share of the first one's: the bodies count as at rest.
@@ -91,7 +92,11 @@ def contact(
         start, corners = start._replace(rate=0.0), law.corners(stage)
         if abs(phase.last.last_acceleration) * scale < AT_REST * bodies.velocity:
             return Contact(tuple(phases), End.REST)
-    raise TooManySteps(f"contact: {MOST_TURNS} turns without separation; accepted: an earlier motion.end_time")
+    # Under a weight they never part where the law loses nothing in small swings, as a loop that no longer yields.
+    raise TooManySteps(
+        f"contact: {MOST_TURNS} turns without separation reach {time:.3g} s of {until:.3g} s; "
+        f"accepted: a motion.end_time of at most {SOONER * time:.2g} s"
+    )
 
 
 def following(law: PointLaw, stage: Stage, depth: float) -> Stage:
