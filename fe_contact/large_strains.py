@@ -21,6 +21,7 @@ from fe_contact.budget.solved import ImpactModel
 from fe_contact.indentation import COARSEST, indent, indenter_of, settings
 from fe_contact.progress import Progress, silent
 from fe_contact.settings import Given, check_kind, tolerance_of
+from fe_contact.solids.newton import material_of
 from fe_contact.solids.pressing import CORRECTED, Solid, check_large
 from fe_contact.threads import one_thread
 from lumped.errors import NotReached
@@ -106,7 +107,8 @@ def depth_reached(scene: Scene) -> float:
     depth, reached = BEGUN * small.peak_depth, None
     for _ in range(ROUNDS):
         stiffness = numerics.penalty * solid.unit / radius
-        reached = solid.advanced(reached, depth, stiffness)
+        with material_of(indenter.target.owner):
+            reached = solid.advanced(reached, depth, stiffness)
         balance = reached.balance
         brought = 0.5 * scene.reduced_mass * scene.velocity**2 + scene.reduced_mass * scene.gravity * depth
         more = brought / (joule * balance.energy)

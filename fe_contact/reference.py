@@ -228,7 +228,7 @@ def check_target(scene: Scene) -> None:
     if not (geometry.surface_remembers or bulky):
         pair = f"of {geometry.shape.name} on {geometry.target.name}"
         reason = f'"bulk": no impact {pair} with it in this version; accepted: "poisson"'
-        raise BadInput(Fault(scene.source, f"{geometry.target.owner}.material.constant", reason))
+        raise BadInput(Fault(scene.source, f"{part}.material.constant", reason) for part in geometry.changing)
     if not recovers_in_flight(geometry):
         scene.check_single("fe, on what remembers by its bulk or by two surfaces,")
 

@@ -31,7 +31,7 @@ from fe_contact.progress import Count, Counted, Progress, silent, uncounted
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics, tolerance_of
 from fe_contact.solids.base import State
 from fe_contact.solids.finite import Hyperelastic
-from fe_contact.solids.newton import Encounter, Equilibrium, EquilibriumLost
+from fe_contact.solids.newton import Encounter, Equilibrium, EquilibriumLost, material_of
 from fe_contact.solids.pressing import MESH_ORDER, WIDENING, Solid, contact_radius, pressed_first
 from fe_contact.solids.relaxing import Fading, FadingLaw, doubled
 from fe_contact.steppers.steps import March, Strike, Work
@@ -317,7 +317,8 @@ class RelaxingStrikes:
 
     def _run(self, numerics: Numerics) -> March:
         message = f"{numerics.elements_per_contact:.3g} elements along the contact radius, {numerics.steps} steps"
-        march = Marcher.of(self.scene, numerics).march(Count.of(self.progress, message, numerics.steps))
+        with material_of(self.scene.target.owner):
+            march = Marcher.of(self.scene, numerics).march(Count.of(self.progress, message, numerics.steps))
         if not np.all(np.isfinite(march.radius)):
             raise MemoryTooSmall(numerics.contact_radius)
         return march

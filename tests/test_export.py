@@ -98,7 +98,8 @@ def test_a_script_has_the_numbers_of_its_scene(tmp_path: Path) -> None:
     [
         (("rod-in-ring", "--to", "ngsolve"), "striker.shape"),
         (("polymer-punch", "--to", "ngsolve"), "striker.shape"),
-        (("two-spheres", "--to", "ngsolve"), "target.material"),
+        (("two-spheres", "--to", "ngsolve"), "striker.material, target.material"),
+        (("polymer-prism", "--to", "ngsolve"), ": striker.material: "),
         (("steel-ball-waves", "--to", "ngsolve"), "inertia"),
         (("steel-ball-plastic", "--to", "ngsolve"), "model.plasticity"),
         (("polymer-sphere-finite", "--to", "calculix", "--depth", "1e-5"), "model.kinematics"),

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -29,18 +30,40 @@ SHORTEST = 1e-4  # share of a Newton step below which the energy stands still
 
 
 class EquilibriumLost(NotReached):
-    """Newton's method found no equilibrium: the body folds, or strain left the range of its material."""
+    """Newton's method found no equilibrium: the body folds, or strain left the range of its material.
 
-    def __init__(self, reason: str) -> None:
-        super().__init__(f"{reason}; cure: smaller depths, or another target.material.hyperelastic")
+    ``owner``: the table of a scene file that the material stands in.
+    """
+
+    def __init__(self, reason: str, owner: str = "target") -> None:
+        super().__init__(f"{reason}; cure: smaller depths, or another {owner}.material.hyperelastic")
+        self.reason = reason
+
+    def of(self, owner: str) -> EquilibriumLost:
+        """The same of the material in another table."""
+        return EquilibriumLost(self.reason, owner)
 
 
 class BeyondRange(EquilibriumLost):
     """In equilibrium at this ``depth`` waves of some direction have no speed in the material: here it ends."""
 
-    def __init__(self, depth: float) -> None:
-        super().__init__(f"from a depth of {depth:.3g} m on the material softens so that strains gather in bands")
+    def __init__(self, depth: float, owner: str = "target") -> None:
+        reason = f"from a depth of {depth:.3g} m on the material softens so that strains gather in bands"
+        super().__init__(reason, owner)
         self.depth = depth
+
+    def of(self, owner: str) -> BeyondRange:
+        """The same of the material in another table."""
+        return BeyondRange(self.depth, owner)
+
+
+@contextmanager
+def material_of(owner: str) -> Iterator[None]:
+    """Inside, what is lost names the material in this table of a scene file. Raises EquilibriumLost."""
+    try:
+        yield
+    except EquilibriumLost as lost:
+        raise lost.of(owner) from lost
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,7 +24,15 @@ from fe_contact.solids.base import State, elliptic
 from fe_contact.solids.bulk import Bulk, CoredBody, Rolled
 from fe_contact.solids.contact import Obstacle, OnDeformed, OnRound, OnTop, Points, Skin, flat_places
 from fe_contact.solids.finite import Hyperelastic
-from fe_contact.solids.newton import Balance, BeyondRange, Encounter, Equilibrium, EquilibriumLost, balanced
+from fe_contact.solids.newton import (
+    Balance,
+    BeyondRange,
+    Encounter,
+    Equilibrium,
+    EquilibriumLost,
+    balanced,
+    material_of,
+)
 from fe_contact.targets.base import TARGETS
 from lumped.errors import BadInput, Fault
 from lumped.materials.energies.base import Strained, energy_of, strained
@@ -171,8 +179,16 @@ def press(
 
     Raises NotReached.
     """
-    if isinstance(indenter.shape, Block) and indenter.shape.uniform:
-        return _pressed_evenly(indenter, indenter.shape, depth)
+    with material_of(indenter.target.owner):
+        if isinstance(indenter.shape, Block) and indenter.shape.uniform:
+            return _pressed_evenly(indenter, indenter.shape, depth)
+        return _pressed_on_meshes(indenter, depth, radii, numerics, softer, counted)
+
+
+def _pressed_on_meshes(
+    indenter: Indenter, depth: Array, radii: Array, numerics: Numerics, softer: Softer | None, counted: Counted
+) -> PressedDepths:
+    """Every depth, m, on a body that is not strained alike everywhere. Raises NotReached."""
     found, again, widening = dict[int, Reached](), dict[int, Reached](), _widening(depth, radii)
     for together in _together(indenter.profile, depth):
         solid, reached = Solid.of(indenter, radii[together], numerics), None

@@ -43,11 +43,15 @@ class Geometry:
         return [(part, material) for part, material in found if material is not None]
 
     @property
+    def changing(self) -> list[str]:
+        """The tables whose materials have a Poisson's ratio that changes in time."""
+        return [part for part, one in self.yielding if one.constant == "bulk" and not one.young.is_elastic]
+
+    @property
     def surface_remembers(self) -> bool:
         """Whether elastic bodies and E*(t) tell all: of a body with lengths, where nu stays or strain is uniform."""
-        steady = all(one.constant == "poisson" or one.young.is_elastic for _, one in self.yielding)
         uniform = isinstance(self.shape, Block) and self.shape.uniform
-        return steady or uniform or not self.target.has_length
+        return not self.changing or uniform or not self.target.has_length
 
     @property
     def springs(self) -> Geometry:
@@ -159,11 +163,7 @@ def changing_faults(source: str, geometry: Geometry) -> list[Fault]:
     """A Poisson's ratio that changes in time, for bodies whose waves are followed only where it stays the same."""
     if not geometry.target.steady_waves(geometry.shape):
         return []
-    return [
-        Fault(source, f"{part}.material.constant", STEADY)
-        for part, material in geometry.yielding
-        if material.constant == "bulk" and not material.young.is_elastic
-    ]
+    return [Fault(source, f"{part}.material.constant", STEADY) for part in geometry.changing]
 
 
 def plasticity_faults(source: str, model: Model, geometry: Geometry | None, impacts: int = 1) -> list[Fault]:
@@ -174,9 +174,10 @@ def plasticity_faults(source: str, model: Model, geometry: Geometry | None, impa
         return [Fault(source, "model.plasticity", "true: a law of its own has no material; accepted: false")]
     shape, target, material = geometry.shape, geometry.target, geometry.material
     elastic, state, shapes = material.young.is_elastic, "with model.plasticity", ", ".join(YIELDING_UNDER)
+    own = f"{target.owner}.material"
     wrong = [
-        (material.yield_strength is None, "target.material.yield_strength", f"missing, in Pa; {state} it is needed"),
-        (not elastic, "target.material.law", f"no viscosity {state} in this version; accepted: elastic"),
+        (material.yield_strength is None, f"{own}.yield_strength", f"missing, in Pa; {state} it is needed"),
+        (not elastic, f"{own}.law", f"no viscosity {state} in this version; accepted: elastic"),
         (model.finite, "model.kinematics", f"finite: no large strains {state} in this version; accepted: small"),
         (impacts > 1, "motion.impacts", f"{impacts}: one impact {state} in this version; accepted: 1"),
         (geometry.striker_material is not None, "striker.material", f"the striker is rigid {state}; leave it out"),

@@ -64,7 +64,7 @@ class Scene:
     def __post_init__(self) -> None:
         check_fields(self.source, self)
         if (self.shape is None) != (self.material is None):
-            missing = "striker.shape" if self.shape is None else "target.material"
+            missing = "striker.shape" if self.shape is None else f"{self.target.owner}.material"
             raise BadInput(Fault(self.source, missing, "missing; shape and material come together"))
         geometry = self.geometry if self.has_geometry else None
         if geometry is not None:
@@ -228,7 +228,7 @@ class Scene:
         """Raise BadInput where no surface alone remembers: of a body with lengths, nu(t) changes the load curve."""
         if not self.geometry.surface_remembers:
             reason = '"bulk" changes nu in time, which no load curve follows; accepted: "poisson", or --method fe'
-            raise BadInput(Fault(self.source, "target.material.constant", reason))
+            raise BadInput(Fault(self.source, f"{part}.material.constant", reason) for part in self.geometry.changing)
 
     def check_sunk(self, depth: float, contact_radius: float = 0.0) -> None:
         """Raise BadInput where an impact went to a depth, m, or a contact radius, m, that is too much."""

@@ -315,6 +315,29 @@ def test_a_material_that_softens_ends_where_its_waves_do() -> None:
     assert 0.08 * last < ended.value.depth < 0.1 * last
 
 
+@pytest.mark.parametrize("faces", ["sliding", "bonded"])
+def test_the_end_of_a_block_is_said_of_the_striker_s_material(faces: str) -> None:
+    """On a rigid plane it alone has one; a layer's stands in the target's table."""
+    material, model = Material(Relaxation(1.0), 0.0, hyperelastic="st_venant_kirchhoff"), Model(kinematics="finite")
+    block = Indenter(Prism(1.0, 1.0, "confined", faces), material, Plane(), model=model)
+    with pytest.raises(BeyondRange, match=r"another striker\.material\.hyperelastic") as ended:
+        press(block, np.array([0.5]), np.array([block.shape.fixed_radius]), settings(COARSE, block.shape))
+    assert 0.0 < ended.value.depth <= 0.5
+    layer = Indenter(Cylinder(1.0, 1.0), material, Layer(0.1, "bonded"), model=model)
+    with pytest.raises(EquilibriumLost, match=r"another target\.material\.hyperelastic"):
+        press(layer, np.array([0.05]), np.array([0.3]), settings(COARSE, layer.shape))
+
+
+@pytest.mark.parametrize("law", ["elastic", "sls"])
+def test_the_end_of_a_struck_block_is_said_of_the_striker_s_material(law: str) -> None:
+    """Whether it relaxes or not."""
+    moduli = {"elastic": {"E": 5e5}, "sls": {"E1": 1.8e6, "E2": 9e5, "C1": 1.8e4}}[law]
+    soft = {"law": law, **moduli, "nu": 0.45, "hyperelastic": "st_venant_kirchhoff"}
+    keys = {"striker.material": soft, "model.kinematics": "finite", "striker.velocity": 3.0, "striker.faces": "bonded"}
+    with pytest.raises(EquilibriumLost, match=r"another striker\.material\.hyperelastic"):
+        run(Scene.load("polymer-prism", keys), tolerance=1e-2)
+
+
 def o_ring(kinematics: str) -> Indenter:
     """E* = 1, the section's radius is a fifth."""
     material = Material(Relaxation(1.0 - 0.45**2), 0.45)

@@ -18,6 +18,8 @@ from hypothesis import strategies as st
 from lumped import BadInput, Scene
 from lumped.scene.tables import load, read
 from lumped.schema.files import SCENES, parse_assignment
+from lumped.shapes.prism import Prism
+from lumped.targets.plane import Plane
 
 SOLID: dict[str, Any] = {
     "name": "try",
@@ -354,3 +356,32 @@ def test_unreadable_files_are_one_line_each(tmp_path: Path) -> None:
 def test_unknown_packaged_name_suggests_the_nearest() -> None:
     with pytest.raises(BadInput, match="did you mean polymer-sphere"):
         load(Scene, "polymer-spher")
+
+
+RELAXING = {"law": "sls", "E1": 1e6, "E2": 1e6, "C1": 1e3, "nu": 0.3, "constant": "bulk"}
+
+
+def test_what_the_material_of_a_block_lacks_is_said_of_the_striker_s() -> None:
+    with pytest.raises(BadInput) as refused:
+        Scene.load("polymer-prism", {"model.plasticity": True})
+    keys = {fault.key for fault in refused.value.faults if "material" in fault.key}
+    assert keys == {"striker.material.yield_strength", "striker.material.law"}
+    with pytest.raises(BadInput, match=r"striker\.material: missing"):
+        Scene(Prism(1e-4, 0.01), 0.05, 0.02, None, target=Plane())
+
+
+@pytest.mark.parametrize(
+    ("name", "keys", "changing"),
+    [
+        ("polymer-prism", {"striker.material": RELAXING, "striker.faces": "bonded"}, {"striker"}),
+        ("two-finite-spheres", {"striker.material": RELAXING}, {"striker"}),
+        ("two-finite-spheres", {"target.material": RELAXING}, {"target"}),
+        ("two-finite-spheres", {"striker.material": RELAXING, "target.material": RELAXING}, {"striker", "target"}),
+    ],
+)
+def test_a_load_curve_is_refused_for_the_material_whose_poisson_s_ratio_changes(
+    name: str, keys: dict[str, object], changing: set[str]
+) -> None:
+    with pytest.raises(BadInput) as refused:
+        Scene.load(name, keys).check_memory()
+    assert {fault.key for fault in refused.value.faults} == {f"{part}.material.constant" for part in changing}

@@ -153,7 +153,8 @@ class ImpactCase:
             raise BadInput(Fault(scene.source, "model", reason))
         if geometry.material.constant != "poisson" or geometry.striking is not None:
             reason = 'accepted for another program: constant = "poisson", and a rigid striker'
-            raise BadInput(Fault(scene.source, "target.material", reason))
+            keys = ", ".join(f"{part}.material" for part, _ in geometry.yielding)
+            raise BadInput(Fault(scene.source, keys, reason))
         body = pressed(scene.source, scene.profile, scene.target, geometry.material.nu)
         found = simulate(scene, "fe", given)
         edge = float(found.history.contact_radius.max())
