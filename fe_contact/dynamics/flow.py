@@ -21,7 +21,7 @@ import numpy as np
 from fe_contact.assembly.forms import Array
 from fe_contact.errors import FlowNotSettled
 
-SETTLED = 1e-4  # of the forces: what a step leaves out of balance; it moves a peak force by a twentieth of that
+SETTLED = 1e-4  # measured: what a step leaves out of balance, of the forces; a force moves by a third of that
 MOST = 200  # work: guesses of a step; some ten are usual
 MIXED = 12  # last guesses that are mixed: as many directions as flow takes in a step, about
 DEPENDENT = 1e-8  # rounding: of the largest change of a guess, below which another one tells nothing new
