@@ -44,6 +44,9 @@ class Material(Record):
         float | None, Key(HARDENING, "slope of the yield stress over the amount of plastic strain")
     ] = None
     work_of_adhesion: Annotated[float | None, Key(Number(1e-9, 1e6, "J/m2"), "work to part two surfaces")] = None
+    friction: Annotated[
+        float | None, Key(Number(0.0, 10.0), "coefficient against what touches it, for the model ledger alone")
+    ] = None
     hyperelastic: Annotated[
         str | None, Key(Member("lumped.materials.energies"), "elastic energy of large strains", required=False)
     ] = None

@@ -12,6 +12,7 @@ from lumped.errors import FeContactError
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Relaxation
 from lumped.materials.energies.base import DEFAULT, energy_of
+from lumped.materials.friction import mismatch, slipping, stuck
 from lumped.materials.radiation import Pulse
 from lumped.result.history import History
 from lumped.result.result import LedgerEntry, Quantity, percent
@@ -22,7 +23,9 @@ from lumped.scene.tables import Model
 from lumped.shapes._block import Block
 from lumped.shapes.base import Shape
 from lumped.targets.half_space import HalfSpace
+from lumped.targets.plane import Plane
 from lumped.targets.rod import Rod
+from lumped.targets.sphere import SphereTarget
 
 GRAVITY = 9.81  # physics: m/s2
 LARGE = "model.kinematics"
@@ -43,6 +46,8 @@ IN_AN_IMPACT = 0.5  # of the change at one depth, since what was brought is give
 ROWS, NEWTON = 200, 8  # steps in an impact that tells of a modulus, and of Newton's method in each
 # Hertz: the first yield, below the surface, is where the peak pressure is 1.6 Y (Johnson, ISBN 978-0-521-34796-9).
 FIRST_YIELD = 1.6
+LIKE_HALF_SPACES = (HalfSpace, SphereTarget, Plane)  # near the contact
+ALMOST_FLAT = 1.0 + 1e-6  # rounding: exponent of the force below which a profile counts as flat
 FLOW = 0.047  # 1/(1 + FLOW ln^2 w): how force falls behind Hertz'; tests/fe/test_plastic.py finds it again
 
 
@@ -81,6 +86,7 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
         gravity(scene, resolved, peak, scene.mass),
         plasticity(scene, resolved, peak, IN_AN_IMPACT),
         adhesion(scene, peak),
+        *friction(scene, peak, impact=True),
     ]
     if scene.geometry.shape.plane:
         entries.append(ends(scene.geometry, peak))
@@ -125,6 +131,7 @@ def ledger_at_rest(indenter: Indenter, peak: Peak) -> tuple[LedgerEntry, ...]:
         entries.append(plasticity(indenter, indenter.model, peak))
     if target.fixed_radius(shape) is None:
         entries.append(profile(shape, indenter.model, peak))
+    entries += friction(indenter, peak)
     return (*entries, ends(indenter.geometry, peak)) if shape.plane else tuple(entries)
 
 
@@ -165,9 +172,9 @@ def gravity(scene: Scene, model: Model, peak: Peak, mass: float) -> LedgerEntry:
     return LedgerEntry(effect, "none assumed", None, asked)
 
 
-def _exponent(scene: Scene, peak: Peak) -> float:
+def _exponent(scene: Scene | Indenter, peak: Peak) -> float:
     """Of the force over the depth, at the peak; 1 where no load curve tells it: the least."""
-    if not scene.has_geometry or peak.depth <= 0.0:
+    if peak.depth <= 0.0 or (isinstance(scene, Scene) and not scene.has_geometry):
         return 1.0
     try:
         curve = scene.target.load_curve(scene.profile, scene.geometry.material.nu)
@@ -421,3 +428,36 @@ def adhesion(scene: Scene, peak: Peak) -> LedgerEntry:
     if radius is None:
         return LedgerEntry("adhesion", "neglected", None, "the pull-off force is known for a round tip only")
     return LedgerEntry("adhesion", "neglected", 1.5 * math.pi * work * radius / peak.force, "JKR pull-off force")
+
+
+def friction(scene: Scene | Indenter, peak: Peak, impact: bool = False) -> list[LedgerEntry]:
+    """What it adds to the force at the same depth, or to the peak of an ``impact``; none of a block, whose faces say.
+
+    As where all of the contact slips, by its coefficient, but no more than where nothing does.
+    """
+    geometry = scene.geometry
+    shape, target, coefficient = geometry.shape, geometry.target, geometry.material.friction
+    if isinstance(shape, Block):
+        return []
+    effect, treated = "friction", "frictionless"
+    if coefficient == 0.0:
+        return [LedgerEntry(effect, treated, 0.0)]
+    if shape.plane or not isinstance(target, LIKE_HALF_SPACES):
+        what = "in plane strain" if shape.plane else f"on a {target.name}"
+        return [LedgerEntry(effect, treated, None, f"no formula {what}")]
+    exponent = _exponent(scene, peak)
+    power = 1.0 / (exponent - 1.0) if exponent > ALMOST_FLAT else math.inf
+    beta = mismatch(geometry.material, geometry.striker_material)
+    most = _peak_of(stuck(beta, power), exponent if impact else 0.0)
+    if coefficient is None:
+        needs = f"needs {target.owner}.material.friction"
+        return [LedgerEntry(effect, treated, None if most else 0.0, needs, spread=(0.0, most) if most else None)]
+    slips = _peak_of(1.0 + slipping(power) * beta * coefficient, exponent if impact else 0.0)
+    return [LedgerEntry(effect, treated, min(slips, most), f"at most {percent(most)}, where nothing slips")]
+
+
+def _peak_of(firmer: float, exponent: float) -> float:
+    """What a force so many times as large at every depth adds to the peak of an impact, whose energy is the same; to
+    the force itself for an ``exponent`` 0 of it.
+    """
+    return float(firmer ** (1.0 / (exponent + 1.0)) - 1.0)

@@ -44,7 +44,7 @@ def test_a_key_for_inertia_stands_where_it_works(name: str) -> None:
     assert bool(entry.key) is works
 
 
-NEEDED = {"density": HEAVY, "yield_strength": 1e9, "work_of_adhesion": 0.05}
+NEEDED = {"density": HEAVY, "yield_strength": 1e9, "work_of_adhesion": 0.05, "friction": 0.2}
 
 
 @pytest.mark.parametrize("name", [name for name in SCENES.names if Scene.load(name).has_geometry])

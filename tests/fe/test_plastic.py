@@ -662,7 +662,9 @@ def test_a_body_is_too_fine_by_its_own_number_of_unknowns(order: int, monkeypatc
 @pytest.mark.parametrize("order", [2, 3])
 def test_a_body_that_yields_has_no_more_points_than_its_degree_asks_for(order: int) -> None:
     """Exact up to the power 2 order - 1, and not beyond: more points would resist flow that keeps the volume."""
-    basis = ground.yielding_basis(MeshTri(np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]), np.array([[0], [1], [2]])), order)
+    basis = ground.yielding_basis(
+        MeshTri(np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]), np.array([[0], [1], [2]])), order
+    )
     (x, _), powers = np.asarray(basis.global_coordinates()), range(2 * order + 1)
     errors = [abs(float(np.vdot(basis.dx, x**power)) * (power + 1.0) * (power + 2.0) - 1.0) for power in powers]
     assert max(errors[:-1]) < 1e-13
