@@ -105,7 +105,7 @@ TABLE = (
     Constant("fe_contact.waves.certify", "ORDER", DERIVED, "contact that begins point by point has order one"),
     Constant("fe_contact.waves.certify", "LEAST_NODES", MEASURED, "along the contact radius; fewer are doubled"),
     Constant("fe_contact.waves.certify", "TRUSTED", DERIVED, "two of the five orders between rows"),
-    Constant("fe_contact.dynamics.flow", "SETTLED", MEASURED, "out of balance where it flows; a force moves by a third"),
+    Constant("fe_contact.dynamics.flow", "SETTLED", MEASURED, "out of balance in flow; a force moves by a third of it"),
     Constant(
         "fe_contact.studies.finite_length", "CORNER", DERIVED, "stress where a free end meets a base: no order more"
     ),

@@ -31,9 +31,8 @@ def mismatch(body: Material, striking: Material | None) -> float:
     own, other = (0.0 if one is None else one.shear.glassy for one in (body, striking))
     if striking is None or own * other == 0.0:
         return max(alone)
-    across, along = 1.0 - 2.0 * np.array([body.nu, striking.nu]), 1.0 - np.array([body.nu, striking.nu])
-    apart, both = across @ [other, -own], along @ [other, own]
-    return float(abs(apart) / (2.0 * both))
+    apart = (1.0 - 2.0 * body.nu) * other - (1.0 - 2.0 * striking.nu) * own
+    return abs(apart) / (2.0 * ((1.0 - body.nu) * other + (1.0 - striking.nu) * own))
 
 
 def _against_rigid(material: Material) -> float:
