@@ -137,6 +137,8 @@ class Line(Solution):
             least = _nearby(fine, other.reading) if self._alone else _ended_later(self.fine, other)
             if self.scene.profile.fixed_radius is not None:  # it jumps, and may stay at its peak
                 least["peak_time"] = _as_high(fine, other.reading, self.safety)
+            else:
+                least["duration"] = _lost_in_rounding(fine)
             if cause == "time_step":
                 halved = _halved(other.reading, self.quarter.reading)
                 least = {name: max(halved.get(name, 0.0), least.get(name, 0.0)) for name in halved | least}
@@ -219,6 +221,18 @@ def _as_high(fine: RodReading, coarse: RodReading, safety: float) -> float:
     change = coarse.force_at(time) - force
     tied = time[(force + safety * np.abs(change - change[-1]) >= (1.0 - ROUNDING) * force[-1]) & (time <= end)]
     return float(np.abs(tied - when).max()) / safety
+
+
+def _lost_in_rounding(fine: RodReading) -> float:
+    """How long before its end, s, a dent has been smaller than what all steps may have rounded off the paths.
+
+    Of a striker that the waves have all but stopped it fades so slowly that no change of steps tells when it is over.
+    """
+    time, dent = fine.rows[TIME], fine.rows[DENT]
+    rounded = np.finfo(float).eps * dent.size * float(np.abs(fine.rows[DEPTH]).max())
+    last = int(np.flatnonzero(dent[:-1] > rounded).max(initial=0))
+    faded = np.interp(rounded, dent[[last + 1, last]], time[[last + 1, last]])
+    return float(time[-1] - faded)
 
 
 def _apart(fine: Run, coarse: Run) -> float:

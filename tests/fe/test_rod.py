@@ -15,7 +15,8 @@ from fe_contact.contact.problem import ContactProblem, PressedSurface
 from fe_contact.methods import simulate
 from fe_contact.reference import check
 from fe_contact.studies.compare.study import WITHIN
-from fe_contact.waves.line_reading import _ended_by
+from fe_contact.waves.line import _lost_in_rounding
+from fe_contact.waves.line_reading import RodReading, _ended_by
 from fe_contact.waves.targets import rod
 from lumped import BadInput, Result, Scene, laws
 from lumped.load_curves.hertz import Hertz
@@ -192,6 +193,35 @@ def test_a_heavy_ball_meets_the_first_front_long_before_it_turns() -> None:
     for name in ("peak_force", "peak_depth", "duration", "restitution", "impulse"):
         value, known = found.quantities[name], truth.quantities[name]
         assert abs(value.value - known.value) <= value.error + known.error
+
+
+def fading(slowness: float) -> RodReading:
+    """Of depth one, its dent of a hundredth gone by half of the time but for a part that closes ``slowness`` times as
+    slowly as the striker came.
+    """
+    time = np.linspace(0.0, 2.0, 2001)
+    dent = 0.01 * np.clip(1.0 - time, 0.0, None) ** 4 + (2.0 - time) / slowness
+    rows = np.array([time, np.clip(time, 0.0, 1.0), np.clip(1.0 - time, 0.0, None), dent**1.5, dent])
+    return RodReading(rows, 1.0, True, {})
+
+
+@pytest.mark.parametrize("slowness", [1e2, 1e5, 1e8, 1e11])
+def test_a_dent_that_fades_ends_within_what_rounding_moves_its_paths(slowness: float) -> None:
+    """By half of the last digit a step, of two paths as long as the striker's."""
+    moved = np.finfo(float).eps * 2001 * slowness
+    assert _lost_in_rounding(fading(slowness)) == pytest.approx(moved, rel=1e-3, abs=1e-12)
+
+
+@pytest.mark.tenth
+def test_a_striker_that_waves_have_all_but_stopped_leaves_when_rounding_lets_it() -> None:
+    """With 5e-8 of its speed: two marches agreed by chance in when, and the bar was 1.7 times too small."""
+    striker = {"shape": "sphere", "radius": 6.75358e-3, "mass": 0.162837, "velocity": 0.03865}
+    material = {"law": "elastic", "E": 1.28871e6, "nu": 0.267088, "density": 740.437}
+    target = {"shape": "rod", "area": 2.55521e-5, "length": 0.05, "end": "absorbing", "material": material}
+    scene = Scene.from_dict({"striker": striker, "target": target, "model": {"inertia": True, "profile": "parabola"}})
+    found = simulate(scene, "fe", {"tolerance": 0.1, "steps": 1600}).quantities["duration"]
+    known = laws.get("rod_waves").of(scene).simulate(scene, 1e-9).quantities["duration"]
+    assert abs(found.value - known.value) <= found.error + known.error
 
 
 @pytest.mark.parametrize("overlap", [1e-3, 1e-9, 1e-15])
