@@ -8,8 +8,10 @@ Forces before and behind a wave front are rows in pairs of one time, where a mar
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -25,7 +27,7 @@ Steps = npt.NDArray[np.intp]
 TELLING = 3  # steps on either side of a front that tell the force there
 SPOILED = 2  # steps behind a front
 LASTING = 0.5  # of the force before a front, which it would still have had
-RINGING, CLEAR = 8, 8  # steps at the ends of a contact in which its element rings, and those beside them
+RINGING, CLEAR = 8, 8  # steps at the ends of a contact and at fronts in which its element rings, and those beside
 DROPPED = 0.6  # of what was to be expected, below which a force drops
 UNENDED = {"duration": None, "restitution": None}
 ROUNDING = 1e-9  # relative, of what adds up over the steps
@@ -176,18 +178,20 @@ class Ending:
         return self.open and self.begun == self.impacts and away > self.pause
 
 
-def read_bar(found: Motion, total: float, scene: Scene, pause: float, echo: int | None) -> tuple[RodReading, Contacts]:
+def read_bar(
+    found: Motion, total: float, scene: Scene, pause: float, echo: float, steps: int | None
+) -> tuple[RodReading, Contacts]:
     """Rows up to the last separation and every contact; ``total`` mass, kg; those within a ``pause``, s, are one.
 
-    ``echo``: steps after which a front comes back, None where steps do not follow it.
+    ``echo``: time, s, after which a front comes back; ``steps`` in it, None where they do not follow it.
     Impulse and history are those of all contacts, the other quantities those of the first.
     """
     rows = np.array([_bar_row(sample) for sample in found.samples]).T
     spans = clustered(found.seen, pause)
     if scene.motion.impacts > 1:
-        rows = _cleaned(rows, spans)
-    elif echo:
-        rows = with_fronts(rows, np.arange(echo, rows.shape[1] - 2, echo), spoiled=0)
+        rows = _cleaned(rows, spans, echo)
+    elif steps:
+        rows = with_fronts(rows, np.arange(steps, rows.shape[1] - 2, steps), spoiled=0)
     separated = len(spans) == scene.motion.impacts and rows[FORCE, -1] <= 0.0
     if separated:
         rows, end = _bar_ended(rows, spans[-1][1])
@@ -247,33 +251,50 @@ def _bar_ended(rows: Array, end: float) -> tuple[Array, float]:
     return np.hstack([pressed, *(row[:, None] for row in ends)]), end
 
 
-def _cleaned(rows: Array, spans: list[tuple[float, float]]) -> Array:
-    """Forces without the ringing of the first element at both ends of every contact, but a line through what follows.
-
-    There the force jumps: two rows of one time at every end within the rows.
+def _cleaned(rows: Array, spans: list[tuple[float, float]], echo: float) -> Array:
+    """Forces without the ringing of the first element at both ends of every contact and at fronts within the first, but
+    a line through what lies beside. There the force jumps: two rows of one time at every end within the rows.
     """
-    time, cleaned, ends = rows[TIME], rows.copy(), list[Array]()
-    for start, end in spans:
-        pressed = np.flatnonzero((time >= start) & (time <= end))
-        if pressed.size < 2 * (RINGING + CLEAR):
-            continue
-        for ordered, edge in ((pressed, start), (pressed[::-1], end)):
-            telling, spoiled = ordered[RINGING : RINGING + CLEAR], ordered[:RINGING]
-            line = np.polyfit(time[telling] - start, rows[FORCE, telling], 1)
-            cleaned[FORCE, spoiled] = np.maximum(np.polyval(line, time[spoiled] - start), 0.0)
-            if time[0] < edge < spans[-1][1]:
-                ends += _jump(rows, edge, max(float(np.polyval(line, edge - start)), 0.0), edge == end)
-    places = np.searchsorted(time, [row[TIME] for row in ends])
-    return np.insert(cleaned, places, np.array(ends).T, axis=1) if ends else cleaned
+    time, cleaned, edges = rows[TIME], rows.copy(), list[Array]()
+    for number, span in enumerate(spans):
+        ends = [(edge, RINGING) for edge in span] if number else _fronts(time, span, echo)
+        for (start, behind), (end, _) in pairwise(ends):
+            pressed = np.flatnonzero((time >= start) & (time <= end))
+            if pressed.size < behind + RINGING + 2 * CLEAR:
+                continue
+            for ordered, edge, ringing in ((pressed, start, behind), (pressed[::-1], end, RINGING)):
+                telling, spoiled = ordered[ringing : ringing + CLEAR], ordered[:ringing]
+                line = np.polyfit(time[telling] - start, rows[FORCE, telling], 1)
+                cleaned[FORCE, spoiled] = np.maximum(np.polyval(line, time[spoiled] - start), 0.0)
+                if time[0] < edge < spans[-1][1]:
+                    reached = _row(rows, edge, max(float(np.polyval(line, edge - start)), 0.0))
+                    apart = [_row(rows, edge, 0.0)] if edge in span else []
+                    edges += [reached, *apart] if edge == end else [*apart, reached]
+    places = np.searchsorted(time, [row[TIME] for row in edges])
+    return np.insert(cleaned, places, np.array(edges).T, axis=1) if edges else cleaned
 
 
-def _jump(rows: Array, time: float, force: float, falls: bool) -> list[Array]:
-    """Two rows of a time, s, between which the force jumps to nothing or from it."""
-    without = np.array([np.interp(time, rows[TIME], row) for row in rows])
-    without[[TIME, FORCE]] = time, 0.0
-    pressed = without.copy()
-    pressed[FORCE] = force
-    return [pressed, without] if falls else [without, pressed]
+def _fronts(time: Array, first: tuple[float, float], echo: float) -> list[tuple[float, int]]:
+    """Start and end of the first contact, s, and between them when what the touch sent is back; with the steps behind
+    each in which the first element rings: half as many more at every return, where it rings again.
+
+    Of those too close to tell forces apart the first counts. Later contacts meet fronts from all touches and
+    separations before, which lie anywhere.
+    """
+    found = [(first[0], RINGING)]
+    for times in range(1, math.ceil((first[1] - first[0]) / echo)):
+        front, behind = first[0] + echo * times, RINGING + RINGING // 2 * times
+        last, at, end = np.searchsorted(time, [found[-1][0], front, first[1]])
+        if at - last > found[-1][1] + RINGING + 2 * CLEAR and end - at > behind + RINGING + 2 * CLEAR:
+            found.append((front, behind))
+    return [*found, (first[1], RINGING)]
+
+
+def _row(rows: Array, time: float, force: float) -> Array:
+    """What was at a time, s, with another force, N."""
+    found = np.array([np.interp(time, rows[TIME], row) for row in rows])
+    found[[TIME, FORCE]] = time, force
+    return found
 
 
 def _onwards(values: Array) -> float:

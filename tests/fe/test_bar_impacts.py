@@ -183,6 +183,19 @@ def test_the_first_echo_of_a_rigid_mass_trebles_the_force(mass: float) -> None:
     assert result.quantities["peak_time"].value == pytest.approx(ECHO, rel=0.01)
 
 
+@pytest.mark.parametrize(("mass", "known"), [(3.0, 0.3), (10.0, 0.04)])
+def test_of_several_contacts_too_the_first_echo_of_a_mass_is_as_high_as_its_wave(mass: float, known: float) -> None:
+    """density c (3 v + 2 g L/c): the first element rang on it, a fifth too high however short the steps."""
+    exact = 30.0 * (3.0 * 10.0 + 10.0 * ECHO)
+    found = fe_contact.run(Scene.load("bar", {"striker.mass": mass}), tolerance=0.1, numerics={"steps": 400})
+    assert len(found.contacts) == 2
+    assert covers(found, "peak_force", exact)
+    assert covers(found, "peak_time", ECHO)
+    assert (found.quantities["peak_force"].error or np.inf) < known * exact
+    sides = found.history.force_at(ECHO * np.array([1.0 - 1e-9, 1.0 + 1e-9]))
+    np.testing.assert_allclose(sides, [30.0 * (10.0 + 10.0 * ECHO), exact], rtol=known, err_msg="before and behind it")
+
+
 def test_memory_costs_a_bar_its_restitution() -> None:
     """A standard linear solid: the front carries the glassy density c v, heat leaves, the ledger closes."""
     changes = {"law": "sls", "E0": 900.0, "R1": 0.5, "R2": 0.2, "nu": 0.0, "density": 1.0}

@@ -215,7 +215,7 @@ def test_what_rings_at_both_ends_of_a_contact_is_the_line_beside_it_that_jumps_f
     pressed, rings = np.any(inside, axis=0), np.any(np.logical_and(inside, near), axis=0)
     force = np.where(pressed, line(time), 0.0)
     rows = np.array([time, 3.0 * time, np.ones_like(time), force + 0.3 * PUSH * rings * (time % 2.0), -time])
-    found = _cleaned(rows, spans)
+    found = _cleaned(rows, spans, 1e3)
     if steps < 2 * (RINGING + CLEAR):
         np.testing.assert_array_equal(found, rows)
         return
@@ -227,6 +227,22 @@ def test_what_rings_at_both_ends_of_a_contact_is_the_line_beside_it_that_jumps_f
     np.testing.assert_allclose(found[FORCE, first], np.where(rises, 0.0, line(jumps)), atol=1e-9)
     np.testing.assert_allclose(found[FORCE, first + 1], np.where(rises, line(jumps), 0.0), atol=1e-9)
     np.testing.assert_allclose(found[FORCE, np.isin(found[TIME], time)], force, atol=1e-9)
+
+
+def test_what_rings_at_fronts_within_a_first_contact_is_the_lines_before_and_behind() -> None:
+    """A force that jumps up by PUSH at every echo: longer rings the one that came twice, and one near the end stays."""
+    echo, time, span = 100.0, np.arange(320.0), (0.0, 305.5)
+    level = PUSH * (1.0 + np.floor(time / echo)) * (time < span[1])
+    rings = [(time >= echo * k) & (time < echo * k + RINGING + RINGING // 2 * k) for k in (1, 2)]
+    rows = np.array([time, time, np.ones_like(time), level + 0.3 * PUSH * np.any(rings, axis=0) * (time % 2.0), -time])
+    found = _cleaned(rows, [span], echo)
+    force = found[FORCE]
+    assert force[found[TIME] < 250.0].max() == pytest.approx(3.0 * PUSH)
+    for times in (1, 2):
+        at = np.flatnonzero(found[TIME] == echo * times)
+        assert at.size == 3, "before, behind, and the row of the march"
+        np.testing.assert_allclose(force[at], PUSH * (times + np.array([0.0, 1.0, 1.0])), rtol=1e-9)
+    assert np.sum(found[TIME] == 3.0 * echo) == 1
 
 
 @pytest.mark.parametrize(("forces", "end", "drop"), [
@@ -362,7 +378,7 @@ def test_a_bar_that_touches_twice_is_told_by_both_contacts_without_their_ringing
         for at, push, given, speed in zip(time, force, np.diff(passed, prepend=0.0), velocity, strict=True)
     )  # fmt: skip
     scene: Any = SimpleNamespace(motion=SimpleNamespace(impacts=2), gravity=gravity, end_time=200.0)
-    found, contacts = read_bar(Motion(samples, none, 1), 10.0, scene, 5.0, None)
+    found, contacts = read_bar(Motion(samples, none, 1), 10.0, scene, 5.0, 1e3, None)
     assert found.separated
     assert found.rows[FORCE].max() == pytest.approx(1.0)
     assert found.quantities["impulse"] == pytest.approx(78.0)

@@ -137,8 +137,8 @@ def run(scene: Scene, numerics: WaveNumerics, counted: Counted = uncounted) -> R
     pause = 0.0 if scene.motion.impacts == 1 else PAUSE * echo
     ending = Ending(scene.motion.impacts, pause)
     found = march(body, np.full(body.size, -scene.velocity), choices, scene.end_time, watch, ending, counted)
-    fronts = 2 * elements if choices.scheme.explicit and not body.massless.size else None
-    reading, contacts = read_bar(found, carried.sum(), scene, pause, fronts)
+    followed = 2 * elements if choices.scheme.explicit and not body.massless.size else None
+    reading, contacts = read_bar(found, carried.sum(), scene, pause, echo, followed)
     energy = account(found, carried.sum())  # stored: strain, and motion about the centre of mass
     return Run(reading, energy, len(found.samples) - 1, body.size, contacts)
 
