@@ -8,21 +8,24 @@ where the plastic strain e_p at the end of a step follows from the displacement 
 under a guess of it is a linear one, whose factors serve all steps, and its end tells another h. By itself that closes
 in slowly where a body flows freely, since every flow that no elastic strain opposes is found again only in part;
 Anderson's mixing of the last guesses (1965, doi 10.1145/321296.321305; Walker and Ni 2011, doi 10.1137/10078356X) makes
-of it a method as quick as GMRES is for a linear system.
+of it a method as quick as GMRES is for a linear system. Where most of what strains flows, that is slow, too: there the
+guess is of h - H u, H nearly all that h changes by with u, and the step is one of the softer stiffness K - H.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple, Protocol, TypeVar
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from fe_contact.assembly.forms import Array
+from fe_contact.assembly.forms import Array, Matrix
 from fe_contact.errors import FlowNotSettled
 
 SETTLED = 1e-4  # measured: what a step leaves out of balance, of the forces; a force moves by a third of that
-MOST = 200  # work: guesses of a step; some ten are usual
+# Work: guesses of a step, some ten are usual; each time that it is softened, and how often that is at most.
+FIRST, LATER, AGAIN = 20, 10, 20
+SOFTENED = 0.95  # safety: of what flow takes away of the stiffness; all of it would let a body flow away
 MIXED = 12  # last guesses that are mixed: as many directions as flow takes in a step, about
 DEPENDENT = 1e-8  # rounding: of the largest change of a guess, below which another one tells nothing new
 
@@ -59,29 +62,39 @@ class Yields(Protocol):
     def flowed(self, displacement: Array, before: Flowed) -> Flowed:
         """At the end of a step, displaced so (N,), after ``before``."""
 
+    def softening(self, displacement: Array, before: Flowed) -> Matrix:
+        """Derivative (N, N) of the forces by the displacement at the end of such a step."""
+
     def check(self, flowed: Flowed, time: float) -> None:
         """Raise NotReached where more flows than may, at a time, s."""
 
 
-Told = TypeVar("Told")
-
-
 def settled(
-    under: Callable[[Array], tuple[Array, Told]], yields: Yields, before: Flowed, time: float
-) -> tuple[Flowed, Told]:
-    """A step's end with its flow: ``under`` forces (N,) that this holds at the end it tells the displacement (N,), and
-    more. Raises FlowNotSettled, and what ``under`` does.
+    softened: Callable[[Matrix | None], Callable[[Array], Array]],
+    displacement: Array,
+    yields: Yields,
+    before: Flowed,
+    time: float,
+) -> tuple[Flowed, Array]:
+    """A step's end with its flow, and the increment of the ``displacement`` (N,) in it. Raises FlowNotSettled, and what
+    ``softened`` does.
+
+    That makes of a matrix H (N, N), None: none, what tells the increment d (N,) where the plastic strain holds H d and
+    forces (N,) that are guessed. Where few guesses do not close in, H is how the flow last found changes what it holds.
     """
-    guess = before.forces + before.grew
-    mixing = Mixing()
-    for _ in range(MOST):
-        displacement, told = under(guess)
-        found = yields.flowed(displacement, before)
-        missing = found.forces - guess
-        if np.linalg.norm(missing) <= SETTLED * np.linalg.norm(found.forces):
-            yields.check(found, time)
-            return found, told
-        guess = mixing.next(guess, missing)
+    softening, guess = None, before.forces + before.grew
+    for guesses in (FIRST, *AGAIN * [LATER]):
+        change_under, mixing = softened(softening), Mixing()
+        for _ in range(guesses):
+            change = change_under(guess)
+            found = yields.flowed(displacement + change, before)
+            missing = found.forces - guess - (0.0 if softening is None else softening @ change)
+            if np.linalg.norm(missing) <= SETTLED * np.linalg.norm(found.forces):
+                yields.check(found, time)
+                return found, change
+            guess = mixing.next(guess, missing)
+        softening = SOFTENED * yields.softening(displacement + change, before)
+        guess = found.forces - softening @ change
     raise FlowNotSettled(time)
 
 

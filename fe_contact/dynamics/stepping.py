@@ -22,7 +22,7 @@ section 6.2).
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -98,9 +98,7 @@ class ImplicitStepper:
         self.body, self.scheme, self.enforced, self.step = body, scheme, enforced, step
         self.laws = [part.law(step) for part in body.parts]
         self._onwards, self._of_change = _newmark(scheme, step)
-        effective = self._effective()
-        self.solve = factorized(effective)
-        self._bodies = _apart(effective, body.pressing.push.tocsr())
+        self.effective = Effective(body.pressing, enforced, self._matrix(), 1 - scheme.alpha_f)
 
     def begun(self, state: BodyState) -> BodyState:
         """The first state: the pressure of a first step belongs to its end."""
@@ -113,66 +111,43 @@ class ImplicitStepper:
         damping = sparse.csr_matrix((body.size, body.size)) if body.damping is None else body.damping
         return sparse.vstack([*(part.stiffness for part in body.parts), body.inertia, damping]).tocsr()
 
-    @cached_property
-    def moved(self) -> tuple[MovedBody, ...]:
-        """Increments by surface forces; one solution serves all bodies that do not feel each other."""
-        push, counts = self.body.pressing.push, [nodes.stop - nodes.start for _, nodes in self._bodies]
-        forces = np.zeros((self.body.size, max(counts)))
-        for (own, nodes), count in zip(self._bodies, counts, strict=True):
-            forces[own, :count] = push[own, nodes].toarray()
-        found = (1 - self.scheme.alpha_f) * self.solve(forces)
-        return tuple(
-            MovedBody(own, nodes, found[own, :count]) for (own, nodes), count in zip(self._bodies, counts, strict=True)
-        )
-
-    @cached_property
-    def surface(self) -> PressedSurface:
-        """What contact knows of the body in a step."""
-        pressing = self.body.pressing
-        compliance = np.zeros((pressing.push.shape[1],) * 2)
-        for own, nodes, increments in self.moved:
-            compliance[nodes, nodes] += pressing.push[own, nodes].T @ increments
-        return surface_of(compliance, pressing)
-
     def advance(self, state: BodyState) -> tuple[BodyState, Found]:
         """The state a step later; raises ContactNotSettled, FlowNotSettled."""
+        forces = self._forces(state)
         if self.body.yields is None or state.flowed is None:
-            change, found = self._pressed(state, self._free(state))
+            change, found = self.effective.pressed(state, forces)
             return self._moved(state, change, found), found
-        free, before, late = self._free(state), state.flowed, 1 - self.scheme.alpha_f
-        tried = list[Found]()
+        late, tried = 1 - self.scheme.alpha_f, list[Found]()
 
-        def under(held: Array) -> tuple[Array, Array]:
-            change, found = self._pressed(state, free + self.solve(late * (held - before.forces)))
-            tried.append(found)
-            return state.displacement + change, change
+        def softened(softening: Matrix | None) -> Callable[[Array], Array]:
+            effective = self.effective if softening is None else self.effective.softened(softening)
 
-        flowed, change = settled(under, self.body.yields, before, state.time)
+            def change_under(held: Array) -> Array:
+                change, found = effective.pressed(state, forces + late * held)
+                tried.append(found)
+                return change
+
+            return change_under
+
+        flowed, change = settled(softened, state.displacement, self.body.yields, state.flowed, state.time)
         last = Found(tried[-1].signed_pressure, sum(found.iterations for found in tried), len(tried))
         return self._moved(state, change, last)._replace(flowed=flowed), last
 
-    def _pressed(self, state: BodyState, change: Array) -> tuple[Array, Found]:
-        """The increment (N,) with new pressure, of one without; raises ContactNotSettled."""
-        pressing = self.body.pressing
-        overlap = pressing.overlap(state.displacement + change)
-        found = self.enforced.found(self.surface, overlap, state.signed_pressure > 0.0, state.time)
-        forces = pressing.forces(found.pressure)
-        for moved in self.moved:
-            change[moved.own] += moved.by(forces)
-        return change, found
-
     def flown(self, state: BodyState) -> BodyState:
-        """The state a step later if nothing presses in it, its signed pressure that of the overlap."""
-        change = self._free(state)
+        """The state a step later if nothing presses and flows in it, its signed pressure that of the overlap."""
+        held = 0.0 if state.flowed is None else (1 - self.scheme.alpha_f) * state.flowed.forces
+        change = self.effective.solve(self._forces(state) + held)
         overlap = self.body.pressing.overlap(state.displacement + change)
         return self._moved(state, change, Found(self.enforced.penalty * overlap, 0))
 
-    def _free(self, state: BodyState) -> Array:
-        """The increment (N,) without new pressure and flow."""
-        held = 0.0 if state.flowed is None else state.flowed.forces
-        return self.solve(self._known(state) + held + self.scheme.alpha_f * self.body.pressing.load(state.pressure))
+    def _forces(self, state: BodyState) -> Array:
+        """Forces (N,) without new pressure, and without what plastic strain holds at the end."""
+        early = self.body.pressing.load(state.pressure)
+        if state.flowed is not None:
+            early = early + state.flowed.forces
+        return self._known(state) + self.scheme.alpha_f * early
 
-    def _effective(self) -> Matrix:
+    def _matrix(self) -> Matrix:
         body, (alpha_m, alpha_f, beta, gamma, _), dt = self.body, self.scheme, self.step
         matrix = (1 - alpha_m) / (beta * dt**2) * body.inertia
         for part, law in zip(body.parts, self.laws, strict=True):
@@ -204,6 +179,59 @@ class ImplicitStepper:
             signed_pressure=found.signed_pressure,
             flowed=state.flowed,
         )
+
+
+@dataclass(frozen=True, eq=False)
+class Effective:
+    """Increments of a body in a step by its effective ``matrix`` (N, N), factorised once; ``late``: what counts of the
+    pressure at the end.
+    """
+
+    pressing: Pressing
+    enforced: Enforced
+    matrix: Matrix
+    late: float
+
+    def softened(self, softening: Matrix) -> Effective:
+        """The same of a body that gives way by so much more, (N, N)."""
+        return replace(self, matrix=self.matrix - self.late * softening)
+
+    @cached_property
+    def solve(self) -> Callable[[Array], Array]:
+        """Back-substitution, (N,)."""
+        return factorized(self.matrix)
+
+    @cached_property
+    def moved(self) -> tuple[MovedBody, ...]:
+        """Increments by surface forces; one solution serves all bodies that do not feel each other."""
+        push = self.pressing.push
+        bodies = _apart(self.matrix, push.tocsr())
+        counts = [nodes.stop - nodes.start for _, nodes in bodies]
+        forces = np.zeros((self.matrix.shape[0], max(counts)))
+        for (own, nodes), count in zip(bodies, counts, strict=True):
+            forces[own, :count] = push[own, nodes].toarray()
+        found = self.late * self.solve(forces)
+        return tuple(
+            MovedBody(own, nodes, found[own, :count]) for (own, nodes), count in zip(bodies, counts, strict=True)
+        )
+
+    @cached_property
+    def surface(self) -> PressedSurface:
+        """What contact knows of the body in a step."""
+        compliance = np.zeros((self.pressing.push.shape[1],) * 2)
+        for own, nodes, increments in self.moved:
+            compliance[nodes, nodes] += self.pressing.push[own, nodes].T @ increments
+        return surface_of(compliance, self.pressing)
+
+    def pressed(self, state: BodyState, forces: Array) -> tuple[Array, Found]:
+        """The increment (N,) by forces (N,) and by new pressure, and that; raises ContactNotSettled."""
+        change = self.solve(forces)
+        overlap = self.pressing.overlap(state.displacement + change)
+        found = self.enforced.found(self.surface, overlap, state.signed_pressure > 0.0, state.time)
+        by_surface = self.pressing.forces(found.pressure)
+        for moved in self.moved:
+            change[moved.own] += moved.by(by_surface)
+        return change, found
 
 
 class MovedBody(NamedTuple):

@@ -7,8 +7,9 @@ from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
+import scipy.sparse as sparse
 
-from fe_contact.assembly.forms import Array, Basis, Indices
+from fe_contact.assembly.forms import Array, Basis, Indices, Matrix
 from fe_contact.dynamics.flow import Flowed
 from fe_contact.plastic.fields import at_nodes
 from fe_contact.plastic.ground import GUARD, WIDEST, at_rest, yielding_basis
@@ -67,6 +68,18 @@ class YieldingCore:
             stores=0.5 * float(np.einsum("c,ep,cep,cep->", OFTEN, weight, twice, found.strain)),
             worked=float(np.vdot(weight, self.yielding.worked(found.amount))),
         )
+
+    def softening(self, displacement: Array, before: Flowed) -> Matrix:
+        """See :class:`fe_contact.dynamics.flow.Yields`."""
+        bulk, yielding = self.bulk, self.yielding
+        gradient = bulk.gradient(np.append(displacement, 0.0))
+        elastic = replace(yielding, strength=np.inf).flowed(gradient, before.strain, before.amount).tangent
+        lost = elastic - yielding.flowed(gradient, before.strain, before.amount).tangent
+        entries = Loaded(bulk, PointAnswer(np.zeros_like(gradient), lost, bulk.weight)).matrices()
+        rows = np.broadcast_to(bulk.dofs[:, :, None], entries.shape)
+        columns = rows.transpose(0, 2, 1)
+        whole = sparse.coo_matrix((entries.ravel(), (rows.ravel(), columns.ravel())), shape=(bulk.size, bulk.size))
+        return whole.tocsc()[:-1, :-1]
 
     def check(self, flowed: Flowed, time: float) -> None:
         """See :class:`fe_contact.dynamics.flow.Yields`."""

@@ -404,7 +404,9 @@ def test_a_step_of_bodies_that_do_not_feel_each_other_is_that_of_their_matrices(
     effective = (1 - scheme.alpha_m) / (scheme.beta * 0.25) * body.inertia + (1 - scheme.alpha_f) * stiffness
     known = (1 - scheme.alpha_f) * np.linalg.solve(effective.toarray(), push)
     after, found = stepper.advance(undeformed(body, np.zeros(size)))
-    np.testing.assert_allclose(np.linalg.inv(stepper.surface.stiffness), push.T @ known, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(
+        np.linalg.inv(stepper.effective.surface.stiffness), push.T @ known, rtol=1e-9, atol=1e-12
+    )
     np.testing.assert_allclose(after.displacement, known @ found.pressure, rtol=1e-9, atol=1e-12)
 
 
