@@ -24,7 +24,7 @@ from fe_contact.errors import FlowNotSettled
 
 SETTLED = 1e-4  # measured: what a step leaves out of balance, of the forces; a force moves by a third of that
 # Work: guesses of a step, some ten are usual; each time that it is softened, and how often that is at most.
-FIRST, LATER, AGAIN = 20, 10, 20
+FIRST, LATER, AGAIN = 40, 10, 20
 SOFTENED = 0.95  # safety: of what flow takes away of the stiffness; all of it would let a body flow away
 MIXED = 12  # last guesses that are mixed: as many directions as flow takes in a step, about
 DEPENDENT = 1e-8  # rounding: of the largest change of a guess, below which another one tells nothing new
