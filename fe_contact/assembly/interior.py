@@ -13,6 +13,7 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array, Basis, Indices, Matrix
 
+REAL = 8  # bytes of a number; a complex one has twice as many
 FACTORS = 160  # bytes a matrix entry: ten entries of the factors, each a number, its place and as much while they grow
 WORK_SPACE = 100e6  # bytes that BLAS and SuperLU take beside
 
@@ -64,10 +65,33 @@ def elimination_order(matrix: Matrix) -> Indices:
     return np.argsort(_factors(matrix, "MMD_AT_PLUS_A").perm_c)
 
 
+@dataclass(frozen=True, eq=False)
+class Eliminated:
+    """A symmetric sparse matrix all but whose last rows are eliminated.
+
+    ``schur`` (m, m): what is left of the last m rows, the inverse of that part of the inverse of all; ``solve``:
+    back-substitution through all rows, of one right-hand side (n,).
+    """
+
+    schur: Array
+    solve: Callable[[Array], Array]
+
+    @classmethod
+    def of(cls, matrix: Matrix, last: int) -> Eliminated:
+        """Of a real matrix or a complex one, whose real part is positive definite, so that no row is exchanged.
+
+        The factors end in those of the Schur complement: none of the right-hand sides that it stands for is solved.
+        Raises MemoryError as :func:`factorized` does.
+        """
+        factors = _factors(matrix, "NATURAL")
+        lower, upper = (part.tocsc()[:, -last:][-last:].toarray() for part in (factors.L, factors.U))
+        return cls(lower @ upper, factors.solve)
+
+
 def _factors(matrix: Matrix, order: Literal["NATURAL", "MMD_AT_PLUS_A"]) -> Any:
     import scipy.sparse.linalg as linalg  # late: a body known from disk needs none
 
-    if FACTORS * matrix.nnz + WORK_SPACE > _room():
+    if FACTORS * matrix.nnz * (matrix.dtype.itemsize / REAL) + WORK_SPACE > _room():
         raise MemoryError
     return linalg.splu(
         matrix.tocsc(),

@@ -107,14 +107,12 @@ class SurfaceOperator:
 class WholeBody:
     """A condensed body with its inside: the ``operator`` of its surface and the scalar scikit-fem ``basis``.
 
-    ``solve`` maps nodal forces (n,) on the zone to the displacement of the whole mesh (2 N,), factorising anew;
-    ``work`` (n, n) that unit forces on the zone do, by the stiffness that was asked for.
+    ``solve`` maps nodal forces (n,) on the zone to the displacement of the whole mesh (2 N,), factorising anew.
     """
 
     operator: SurfaceOperator
     basis: Basis
     solve: Interior
-    work: Array | None
 
 
 def made(make: Callable[..., Any], *numbers: object) -> Any:
@@ -150,7 +148,6 @@ def condensed(
     surface: Surface,
     watch: Matrix = None,
     floating: Floating | None = None,
-    worked: Matrix = None,
 ) -> WholeBody:
     """Factorise the stiffness of a body once and condense it to its contact zone.
 
@@ -163,18 +160,24 @@ def condensed(
     surface : where contact may happen, in units of the mesh.
     watch : weights of the displacement of the place from which depth is measured, (1, 2 N); None: it is at rest.
     floating : of a body whose inertia alone balances the load; ``fixed`` then holds it at one point too.
-    worked : stiffness, sparse (2 N, 2 N), whose work on the displacements by unit forces is wanted.
     """
-    order = basis.elem.maxdeg
-    points, weights, trace = surface.quadrature(order)
-    loaded = trace.shape[1]
-    normal = _normals(surface, matrix.shape[0])
+    loaded = surface.loaded(basis.elem.maxdeg)
+    normal = normals(surface, matrix.shape[0])
     free = np.setdiff1d(np.arange(matrix.shape[0]), fixed)
     interior = Interior(matrix[free][:, free], free, normal[:, :loaded], floating)
-    response, watched, work = _influence(interior.factorised(), normal, watch, loaded, worked)
-    compliance = response[:loaded]
+    response, watched = _influence(interior.factorised(), normal, watch, loaded)
+    return WholeBody(seen_through(basis, surface, poisson, response, watched), basis, interior)
+
+
+def seen_through(
+    basis: Basis, surface: Surface, poisson: float, response: Array, watched: Array | None = None
+) -> SurfaceOperator:
+    """The operator of a body whose response (n_s, n), and what is watched (n,), are known; see its fields."""
+    order = basis.elem.maxdeg
+    points, weights, trace = surface.quadrature(order)
+    compliance = response[: trace.shape[1]]
     condensed = np.linalg.inv((compliance + compliance.T) / 2)
-    operator = SurfaceOperator(
+    return SurfaceOperator(
         nodes=surface.coordinate,
         order=order,
         stiffness=(condensed + condensed.T) / 2,
@@ -188,29 +191,21 @@ def condensed(
         watched=watched,
         degrees_of_freedom=2 * int(basis.N),
     )
-    return WholeBody(operator, basis, interior, work)
 
 
 def _influence(
-    displacement: Callable[[Array], Array], normal: Matrix, watch: Matrix, loaded: int, worked: Matrix
-) -> tuple[Array, Array | None, Array | None]:
-    """Inward displacement of the surface nodes, (n_s, loaded), and of what is watched, (loaded,), under unit forces;
-    work of a stiffness, (loaded, loaded).
-    """
+    displacement: Callable[[Array], Array], normal: Matrix, watch: Matrix, loaded: int
+) -> tuple[Array, Array | None]:
+    """Inward displacement of the surface nodes, (n_s, loaded), and of what is watched, (loaded,), under unit forces."""
     seen = -normal.T if watch is None else sparse.vstack([-normal.T, watch])
     known, surface = np.empty((seen.shape[0], loaded)), normal.shape[1]
-    whole = None if worked is None else np.empty((normal.shape[0], loaded))  # large: made once, not of its parts
     forces = np.eye(loaded)
     for some in np.array_split(np.arange(loaded), -(-loaded // SOLVED_AT_ONCE)):
-        moved = displacement(forces[:, some])
-        known[:, some] = seen @ moved
-        if whole is not None:
-            whole[:, some] = moved
-    work = None if whole is None else whole.T @ (worked @ whole)
-    return known[:surface], None if watch is None else known[surface], work
+        known[:, some] = seen @ displacement(forces[:, some])
+    return known[:surface], None if watch is None else known[surface]
 
 
-def _normals(surface: Surface, size: int) -> sparse.csc_matrix:
+def normals(surface: Surface, size: int) -> sparse.csc_matrix:
     """Unit normals of the surface nodes as columns, sparse (2 N, n_s)."""
     columns = np.arange(surface.dofs.size)
     rows = np.concatenate([2 * surface.dofs, 2 * surface.dofs + 1])
@@ -260,10 +255,10 @@ class ElasticBody:
 
         return cls(basis, matrix, fixed, surface, floating)
 
-    def condensed(self, poisson: float, worked: Matrix = None) -> WholeBody:
+    def condensed(self, poisson: float) -> WholeBody:
         """With this Poisson's ratio, for E* = 1; see :func:`condensed`."""
         matrix = self.stiffness(*moduli(poisson)).tocsc()
-        return condensed(self.basis, matrix, self.fixed, poisson, self.surface, floating=self.floating, worked=worked)
+        return condensed(self.basis, matrix, self.fixed, poisson, self.surface, floating=self.floating)
 
 
 @dataclass(frozen=True, eq=False)

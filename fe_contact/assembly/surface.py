@@ -36,6 +36,10 @@ class Surface:
         corners = self.coordinate[::order]
         return corners[: np.searchsorted(corners, self.zone if end is None else end) + 1]
 
+    def loaded(self, order: int) -> int:
+        """How many of the first nodes, of elements of an order, lie in the zone: those that may be pressed on."""
+        return order * (len(self.corners(order)) - 1) + 1
+
     def quadrature(self, order: int) -> tuple[Array, Array, Array]:
         """Points of the zone and their areas, each (q,), and the displacement there from that of its nodes, (q, n)."""
         points, lengths, trace = contact_quadrature(self.corners(order), order)
