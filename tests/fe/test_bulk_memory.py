@@ -18,7 +18,7 @@ from fe_contact.assembly.forms import elastic, stiffness
 from fe_contact.assembly.operators import ElasticBody, element, moduli, operator_of
 from fe_contact.assembly.surface import flat
 from fe_contact.bodies.bulk_memory import BulkBody, BulkMemory, Moduli
-from fe_contact.bodies.modes import modes, poisson
+from fe_contact.bodies.modes import Pencil, modes, poisson
 from fe_contact.bodies.pressing import held
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import plan
@@ -324,8 +324,8 @@ def test_a_thick_layer_is_the_half_space_of_the_same_bulk_modulus() -> None:
         assert abs(other.value - one.value) <= one.error + other.error + 1.2 * share * one.value, key
 
 
-@pytest.mark.tenth
-def test_factorisations_do_not_grow_with_the_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+def counted(monkeypatch: pytest.MonkeyPatch) -> dict[str, int]:
+    """Sparse factorisations and back-substitutions from now on."""
     counts, factorise = {"factorizations": 0, "solves": 0}, linalg.splu
 
     class Counted:
@@ -333,11 +333,20 @@ def test_factorisations_do_not_grow_with_the_steps(monkeypatch: pytest.MonkeyPat
             counts["factorizations"] += 1
             self.factor = factorise(*args, **options)
 
+        def __getattr__(self, name: str) -> Any:
+            return getattr(self.factor, name)
+
         def solve(self, load: np.ndarray) -> np.ndarray:
-            counts["solves"] += load.shape[1]
-            return self.factor.solve(load)
+            counts["solves"] += 1 if load.ndim == 1 else load.shape[1]
+            return np.asarray(self.factor.solve(load))
 
     monkeypatch.setattr(linalg, "splu", Counted)
+    return counts
+
+
+@pytest.mark.tenth
+def test_factorisations_do_not_grow_with_the_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    counts = counted(monkeypatch)
     scene = Scene.load("polymer-layer", BULK | {"target.material.nu": 0.4321})
     numerics = plan(scene, {}).numerics
     for steps in (20, 40):
@@ -346,6 +355,36 @@ def test_factorisations_do_not_grow_with_the_steps(monkeypatch: pytest.MonkeyPat
         assert len(done.time) > steps
         assert counts == {"factorizations": body.factorizations, "solves": body.solves}
     assert body.factorizations <= 4
+
+
+@pytest.mark.parametrize(("name", "solves"), [("bonded", 0), ("o-ring", 0), ("free sphere", 3)])
+def test_no_node_of_the_surface_is_solved_for_through_the_whole_mesh(
+    name: str, solves: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """But for one fall a ratio of a body that nothing holds; three ratios, and one matrix more that tells the order."""
+    counts = counted(monkeypatch)
+    found = modes.__wrapped__(BODIES[name], 0.05, 0.15)
+    assert counts == {"factorizations": 4, "solves": solves} == {key: getattr(found, key) for key in counts}
+    assert len(found.operator.stiffness) > 20
+
+
+@pytest.mark.family
+@pytest.mark.parametrize("name", BODIES)
+def test_what_is_left_of_the_eliminated_mesh_is_what_all_of_it_answers(name: str) -> None:
+    """Displacement of the surface, and the work of its volume and of its shape, down to nearly no change of volume."""
+    body = BODIES[name].follow()
+    pencil = Pencil.of(body)
+    shape, volume = body.stiffness(0.0, 1.0), body.stiffness(1.0, 0.0)
+    for ratio in (1e-3, 0.05, 1.0, 30.0):
+        found, whole = pencil.at(ratio), body.condensed(poisson(ratio))
+        motion = whole.solve(np.eye(len(whole.operator.stiffness)))
+        pairs = (
+            (found.response, whole.operator.response),
+            (found.work, motion.T @ (shape @ motion)),
+            ((found.compliance - found.shear * found.work) / found.bulk, motion.T @ (volume @ motion)),
+        )
+        for answer, direct in pairs:
+            assert np.linalg.norm(answer - direct) < 1e-8 * np.linalg.norm(direct)
 
 
 @pytest.mark.family
