@@ -450,6 +450,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
         "1 ->",
     ): "a chord of some length, of a lone highest place",
     ("fe_contact/budget/curve.py", "FINE", "201 -> 402"): GUESS,
+    ("fe_contact/bodies/modes.py", "IMAGINARY", ""): "any part whose square is rounding tells the same",
     ("fe_contact/bodies/modes.py", "INDEPENDENT", ""): "with 1e-11 of all energy or without, stiffness errs by 6e-9",
     ("lumped/solvers/mdr/nest.py", "Nest.level", "1.0 ->"): GUESS,
     (

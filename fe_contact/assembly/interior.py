@@ -13,8 +13,7 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array, Basis, Indices, Matrix
 
-REAL = 8  # bytes of a number; a complex one has twice as many
-FACTORS = 160  # bytes a matrix entry: ten entries of the factors, each a number, its place and as much while they grow
+FACTORS = 20  # sizes of a matrix entry: ten of the factors, each a number, its place and as much while they grow
 WORK_SPACE = 100e6  # bytes that BLAS and SuperLU take beside
 
 
@@ -91,7 +90,7 @@ class Eliminated:
 def _factors(matrix: Matrix, order: Literal["NATURAL", "MMD_AT_PLUS_A"]) -> Any:
     import scipy.sparse.linalg as linalg  # late: a body known from disk needs none
 
-    if FACTORS * matrix.nnz * (matrix.dtype.itemsize / REAL) + WORK_SPACE > _room():
+    if FACTORS * matrix.nnz * matrix.dtype.itemsize + WORK_SPACE > _room():
         raise MemoryError
     return linalg.splu(
         matrix.tocsc(),

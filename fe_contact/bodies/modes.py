@@ -160,7 +160,7 @@ class Pencil:
 
     @classmethod
     def of(cls, body: ElasticBody) -> Pencil:
-        """In the order of one of its matrices, whose pattern all of them have, but for the surface."""
+        """The order is that of one of its matrices, whose pattern all of them have, with the surface put last."""
         volume, shear = body.stiffness(1.0, 0.0).tocsc(), body.stiffness(0.0, 1.0).tocsc()
         free = np.setdiff1d(np.arange(shear.shape[0]), body.fixed)
         free = free[elimination_order((volume + shear)[free][:, free])]
@@ -173,7 +173,7 @@ class Pencil:
             shear=shear[free][:, free],
             normal=normal[free],
             last=int(touched.sum()),
-            resultant=normal[1::2].toarray().sum(axis=0),
+            resultant=normal.T @ np.tile([0.0, 1.0], normal.shape[0] // 2),
             inertia=None if body.floating is None else body.floating.mass[free] / body.floating.mass.sum(),
         )
 
