@@ -86,7 +86,7 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
         gravity(scene, resolved, peak, scene.mass),
         plasticity(scene, resolved, peak, IN_AN_IMPACT),
         adhesion(scene, peak),
-        *friction(scene, peak, impact=True),
+        *friction(scene, resolved, peak, impact=True),
     ]
     if scene.geometry.shape.plane:
         entries.append(ends(scene.geometry, peak))
@@ -131,7 +131,7 @@ def ledger_at_rest(indenter: Indenter, peak: Peak) -> tuple[LedgerEntry, ...]:
         entries.append(plasticity(indenter, indenter.model, peak))
     if target.fixed_radius(shape) is None:
         entries.append(profile(shape, indenter.model, peak))
-    entries += friction(indenter, peak)
+    entries += friction(indenter, indenter.model, peak)
     return (*entries, ends(indenter.geometry, peak)) if shape.plane else tuple(entries)
 
 
@@ -430,10 +430,11 @@ def adhesion(scene: Scene, peak: Peak) -> LedgerEntry:
     return LedgerEntry("adhesion", "neglected", 1.5 * math.pi * work * radius / peak.force, "JKR pull-off force")
 
 
-def friction(scene: Scene | Indenter, peak: Peak, impact: bool = False) -> list[LedgerEntry]:
+def friction(scene: Scene | Indenter, model: Model, peak: Peak, impact: bool = False) -> list[LedgerEntry]:
     """What it adds to the force at the same depth, or to the peak of an ``impact``; none of a block, whose faces say.
 
-    As where all of the contact slips, by its coefficient, but no more than where nothing does.
+    As where all of the contact slips, by its coefficient, but no more than where nothing does. Both are of elastic
+    bodies: at nu = 0.49 a punch that sticks bears some 0.5 % more by finite elements where a body flows, 0.02 % before.
     """
     geometry = scene.geometry
     shape, target, coefficient = geometry.shape, geometry.target, geometry.material.friction
@@ -445,6 +446,8 @@ def friction(scene: Scene | Indenter, peak: Peak, impact: bool = False) -> list[
     if shape.plane or not isinstance(target, LIKE_HALF_SPACES):
         what = "in plane strain" if shape.plane else f"on a {target.name}"
         return [LedgerEntry(effect, treated, None, f"no formula {what}")]
+    if model.plasticity:
+        return [LedgerEntry(effect, treated, None, "no formula for a body that yields")]
     exponent = _exponent(scene, peak)
     power = 1.0 / (exponent - 1.0) if exponent > ALMOST_FLAT else math.inf
     beta = mismatch(geometry.material, geometry.striker_material)

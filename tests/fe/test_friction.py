@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -15,10 +16,11 @@ from fe_contact.assembly.interior import factorized
 from fe_contact.assembly.operators import basis_on, made, system_matrix
 from fe_contact.assembly.surface import flat
 from fe_contact.bodies.pressing import held
+from fe_contact.indentation import indenter_of
 from lumped import Scene
 from lumped.materials import Material, Relaxation
 from lumped.materials.friction import mismatch, slipping, stuck
-from lumped.result.model_ledger import Peak, model_ledger
+from lumped.result.model_ledger import Peak, ledger_at_rest, model_ledger
 
 ELEMENTS, FAR, FINER = 8.0, 60.0, 16.0
 
@@ -141,3 +143,19 @@ def test_a_ledger_bounds_friction_until_its_coefficient_is_given() -> None:
     assert entry(0.1)[0] == pytest.approx((1.0 + 0.1 * slipping(2.0) * beta(0.3)) ** 0.4 - 1.0, rel=1e-3)
     assert entry(2.0)[0] == pytest.approx(most, rel=1e-3)
     assert entry(**{"target.material.nu": 0.5}) == (0.0, None)
+
+
+def test_no_elastic_bound_is_told_of_what_yields() -> None:
+    """Where a body flows, what sticks bears more even at nu = 1/2, of which elastic bodies know nothing."""
+    strong = {"target.material.yield_strength": 3e8, "model.direction": "down"}
+    scene = Scene.load("steel-ball", {**strong, "model.plasticity": True, "target.material.nu": 0.49})
+    peak = Peak(60.0, 5e-6, 1e-4, 1e-5)
+    at_rest = indenter_of(scene)
+    for ledger in (model_ledger(scene, peak), ledger_at_rest(at_rest, peak)):
+        found = {one.effect: one for one in ledger}["friction"]
+        assert (found.estimate, found.spread) == (None, None)
+        assert found.note == "no formula for a body that yields"
+    elastic = model_ledger(scene, peak, replace(scene.model, plasticity=False))
+    assert {one.effect: one for one in elastic}["friction"].spread is not None
+    slippery = scene.changed({"target.material.friction": 0.0})
+    assert {one.effect: one for one in model_ledger(slippery, peak)}["friction"].estimate == 0.0
