@@ -40,6 +40,8 @@ from fe_contact.dynamics.schemes.base import Scheme
 from fe_contact.errors import ContactNotSettled
 from lumped.errors import BadInput, Fault
 
+NO_FLOW = "explicit: nothing yields by it; accepted: an implicit one"  # of a scheme
+
 
 @dataclass(frozen=True, eq=False)
 class Enforced:
@@ -278,7 +280,7 @@ class ExplicitStepper:
             reason = "an explicit scheme has no answer to a parallel viscosity; accepted: an implicit one"
             raise BadInput(Fault("numerics", "scheme", reason))
         if body.yields is not None:
-            raise BadInput(Fault("numerics", "scheme", "explicit: nothing yields by it; accepted: an implicit one"))
+            raise BadInput(Fault("numerics", "scheme", NO_FLOW))
         self.body, self.scheme, self.enforced, self.step = body, scheme, enforced, step
         self.laws = [part.law(step) for part in body.parts]
         inertia = body.inertia if body.damping is None else body.inertia + step / 2 * body.damping

@@ -14,9 +14,12 @@ import scipy.sparse as sparse
 
 from fe_contact.assembly.forms import Matrix
 from fe_contact.cli import main
+from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.dynamics import flow
 from fe_contact.dynamics.flow import Flowed, settled
 from fe_contact.dynamics.march import Motion, march
+from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
+from fe_contact.dynamics.stepping import Enforced, ExplicitStepper
 from fe_contact.errors import FlowNotSettled
 from fe_contact.plastic.core import YieldingCore
 from fe_contact.plastic.ground import GUARD, WIDEST
@@ -24,6 +27,7 @@ from fe_contact.plastic.path import PlasticZoneWide
 from fe_contact.progress import silent
 from fe_contact.reference import fe
 from fe_contact.settings import WaveNumerics
+from fe_contact.studies.larger_models import sufficient
 from fe_contact.waves.impact import choices_of, left, locked
 from fe_contact.waves.moving import Moving
 from fe_contact.waves.targets import half_space
@@ -312,9 +316,18 @@ def test_what_does_not_yield_with_inertia_is_refused_with_its_key(changes: dict[
         fe(scene(**changes), {})
 
 
-def test_an_explicit_scheme_is_refused() -> None:
+def test_an_explicit_scheme_is_refused_as_soon_as_it_is_planned() -> None:
+    explicit = {"scheme": "central_difference", "mass": "lumped", "tolerance": 0.1}
     with pytest.raises(BadInput, match=r"numerics\.scheme.*accepted: an implicit one"):
-        fe(scene(), {"scheme": "central_difference", "mass": "lumped", "tolerance": 0.1})
+        half_space.plan(scene(), explicit)
+    elastic = scene(**{"model.plasticity": False})
+    found = sufficient(elastic, {**explicit, "tolerance": 0.05})
+    assert not found.scene.model.plasticity
+    assert "cannot be taken in" in found.left["plasticity"]
+    body = half_space.moving(scene(), core_of(scene())[1]).body
+    scheme = WAVE_SCHEMES.get("central_difference").of(1.0)
+    with pytest.raises(BadInput, match="nothing yields by it"):
+        ExplicitStepper(body, scheme, Enforced(ENFORCEMENTS.get("penalty"), 1.0), 1.0)
 
 
 @pytest.mark.tenth

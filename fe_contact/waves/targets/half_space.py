@@ -22,6 +22,8 @@ from fe_contact.bodies.pressing import held
 from fe_contact.budget.plan import SPRINGS, Plan
 from fe_contact.dynamics.body import BodyState, Part
 from fe_contact.dynamics.march import march
+from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
+from fe_contact.dynamics.stepping import NO_FLOW
 from fe_contact.fields import Fields, nodal_stress, subdivided, written
 from fe_contact.plastic.core import YieldingCore
 from fe_contact.plastic.ground import yielding_of
@@ -30,7 +32,7 @@ from fe_contact.settings import RANGES, Given, WaveNumerics
 from fe_contact.waves.balls import Ball, flying
 from fe_contact.waves.impact import choices_of
 from fe_contact.waves.moving import BEYOND, SMALLEST, Flying, Moving, UnitBody, WaveSide
-from fe_contact.waves.plan import SMOOTH_STEPS, SPREAD, STEPS, TRAVEL, Usual, contact_time, placed
+from fe_contact.waves.plan import DEFAULTS, SMOOTH_STEPS, SPREAD, STEPS, TRAVEL, Usual, contact_time, placed
 from fe_contact.waves.targets.base import WaveTarget, too_fast
 from lumped.errors import BadInput, Fault
 from lumped.laws import mdr
@@ -65,9 +67,12 @@ def check(scene: Scene) -> None:
 def plan(scene: Scene, given: Given) -> Plan:
     """Choose what ``given`` (checked settings) leaves open.
 
-    Raises NotReached where even the row of springs does not come to an end.
+    Raises NotReached where even the row of springs does not come to an end, BadInput for a scheme by which what yields
+    cannot flow.
     """
     check_compressible(scene)
+    if scene.model.plasticity and "scheme" in given:
+        _check_flows(scene, given["scheme"])
     scales = yielding_scales(scene) if scene.model.plasticity else mdr.estimate(scene, SPRINGS)
     longest = _slowest(scene, scales.restitution) * contact_time(scene, scales)
     far_radius = _far_radius(scene, scales.contact_radius, longest)
@@ -75,6 +80,11 @@ def plan(scene: Scene, given: Given) -> Plan:
         return placed(scene, {"tolerance": YIELDING_TOLERANCE, **given}, scales, far_radius, usual=FIRM)
     steps = SMOOTH_STEPS if scene.motion.impacts == 1 else STEPS  # what is left of one contact shakes the next
     return placed(scene, given, scales, far_radius, usual=Usual(steps=steps))
+
+
+def _check_flows(scene: Scene, scheme: str) -> None:
+    if WAVE_SCHEMES.get(scheme).of(DEFAULTS["rho"]).explicit:
+        raise BadInput(Fault(scene.source, "numerics.scheme", NO_FLOW))
 
 
 def yielding_scales(scene: Scene) -> ImpactScales:
