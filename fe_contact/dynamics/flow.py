@@ -69,22 +69,22 @@ class Yields(Protocol):
         """Raise NotReached where more flows than may, at a time, s."""
 
 
-def settled(
-    softened: Callable[[Matrix | None], Callable[[Array], Array]],
+def flow_of_step(
+    change_with: Callable[[Matrix | None], Callable[[Array], Array]],
     displacement: Array,
     yields: Yields,
     before: Flowed,
     time: float,
 ) -> tuple[Flowed, Array]:
     """A step's end with its flow, and the increment of the ``displacement`` (N,) in it. Raises FlowNotSettled, and what
-    ``softened`` does.
+    ``change_with`` does.
 
     That makes of a matrix H (N, N), None: none, what tells the increment d (N,) where the plastic strain holds H d and
     forces (N,) that are guessed. Where few guesses do not close in, H is how the flow last found changes what it holds.
     """
     softening, guess = None, before.forces + before.grew
     for guesses in (FIRST, *AGAIN * [LATER]):
-        change_under, mixing = softened(softening), Mixing()
+        change_under, mixing = change_with(softening), Mixing()
         for _ in range(guesses):
             change = change_under(guess)
             found = yields.flowed(displacement + change, before)

@@ -35,7 +35,7 @@ from fe_contact.assembly.interior import factorized
 from fe_contact.contact.enforcement.base import Enforcement
 from fe_contact.contact.problem import ContactProblem, PressedSurface, Touching
 from fe_contact.dynamics.body import BodyState, BodyWithMass, Pressing, internal, motions_of, state_of
-from fe_contact.dynamics.flow import settled
+from fe_contact.dynamics.flow import flow_of_step
 from fe_contact.dynamics.schemes.base import Scheme
 from fe_contact.errors import ContactNotSettled
 from lumped.errors import BadInput, Fault
@@ -117,21 +117,21 @@ class ImplicitStepper:
         """The state a step later; raises ContactNotSettled, FlowNotSettled."""
         forces = self._forces(state)
         if self.body.yields is None or state.flowed is None:
-            change, found = self.effective.pressed(state, forces)
+            change, found = self.effective.increment(state, forces)
             return self._moved(state, change, found), found
         late, tried = 1 - self.scheme.alpha_f, list[Found]()
 
-        def softened(softening: Matrix | None) -> Callable[[Array], Array]:
-            effective = self.effective if softening is None else self.effective.softened(softening)
+        def change_with(softening: Matrix | None) -> Callable[[Array], Array]:
+            effective = self.effective if softening is None else self.effective.less(softening)
 
             def change_under(held: Array) -> Array:
-                change, found = effective.pressed(state, forces + late * held)
+                change, found = effective.increment(state, forces + late * held)
                 tried.append(found)
                 return change
 
             return change_under
 
-        flowed, change = settled(softened, state.displacement, self.body.yields, state.flowed, state.time)
+        flowed, change = flow_of_step(change_with, state.displacement, self.body.yields, state.flowed, state.time)
         last = Found(tried[-1].signed_pressure, sum(found.iterations for found in tried), len(tried))
         return self._moved(state, change, last)._replace(flowed=flowed), last
 
@@ -194,7 +194,7 @@ class Effective:
     matrix: Matrix
     late: float
 
-    def softened(self, softening: Matrix) -> Effective:
+    def less(self, softening: Matrix) -> Effective:
         """The same of a body that gives way by so much more, (N, N)."""
         return replace(self, matrix=self.matrix - self.late * softening)
 
@@ -225,7 +225,7 @@ class Effective:
             compliance[nodes, nodes] += self.pressing.push[own, nodes].T @ increments
         return surface_of(compliance, self.pressing)
 
-    def pressed(self, state: BodyState, forces: Array) -> tuple[Array, Found]:
+    def increment(self, state: BodyState, forces: Array) -> tuple[Array, Found]:
         """The increment (N,) by forces (N,) and by new pressure, and that; raises ContactNotSettled."""
         change = self.solve(forces)
         overlap = self.pressing.overlap(state.displacement + change)

@@ -89,7 +89,7 @@ def left(sample: Sample, slow: float = 0.0) -> bool:
 def record(moving: Moving, found: Motion, scene: Scene) -> March:
     """The history from touch to separation as of any march; forces are what the striker's momentum says."""
     (_, last), separated, flowed = found.seen[-1], left(found.samples[-1]), found.final.flowed
-    rest = locked(moving.body, flowed) if separated and flowed is not None else None
+    rest = left_behind(moving.body, flowed) if separated and flowed is not None else None
     pressed = found.samples[:-1] if separated else found.samples
     end, spread = pressed[-1].time, 0.0
     if separated:  # where too few steps tell when, it is the last touch, known to a step
@@ -128,7 +128,7 @@ def _radius(moving: Moving, sample: Sample) -> float:
     return radius
 
 
-def energies(moving: Moving, found: Motion, scene: Scene, rest: Locked | None = None) -> dict[str, float]:
+def energies(moving: Moving, found: Motion, scene: Scene, rest: LeftBehind | None = None) -> dict[str, float]:
     """Terms in J at the end. What waves in an endless elastic body hold without a load never comes back: radiated.
 
     Of a viscoelastic one its motion alone is counted so: its strain has still to relax. What a striker that yields
@@ -159,21 +159,21 @@ def account(found: Motion, mass: float, waves: float = 0.0) -> dict[str, float]:
     })  # fmt: skip
 
 
-class Locked(NamedTuple):
+class LeftBehind(NamedTuple):
     """A body at rest in which something has flowed: elastic ``energy``, J, and how deep the striker then touches, m."""
 
     energy: float
     dent: float
 
 
-def locked(body: BodyWithMass, flowed: Flowed) -> Locked:
+def left_behind(body: BodyWithMass, flowed: Flowed) -> LeftBehind:
     """What is left for ever, once all waves are gone."""
     stiffness = sum(part.relaxation.equilibrium * part.stiffness for part in body.parts).tocsc()
     held = np.flatnonzero(stiffness.diagonal() > 0.0)  # a rigid striker is not
     displacement = np.zeros(body.size)
     displacement[held] = factorized(stiffness[held][:, held])(flowed.forces[held])
     strain = 0.5 * float(displacement @ flowed.forces)
-    return Locked(strain + flowed.elastic(displacement), -float(body.pressing.overlap(displacement).max()))
+    return LeftBehind(strain + flowed.elastic(displacement), -float(body.pressing.overlap(displacement).max()))
 
 
 def parting(time: Array, force: Array, exponent: float) -> tuple[float, float] | None:

@@ -16,7 +16,7 @@ from fe_contact.assembly.forms import Matrix
 from fe_contact.cli import main
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.dynamics import flow
-from fe_contact.dynamics.flow import Flowed, settled
+from fe_contact.dynamics.flow import Flowed, flow_of_step
 from fe_contact.dynamics.march import Motion, march
 from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
 from fe_contact.dynamics.stepping import Enforced, ExplicitStepper
@@ -28,7 +28,7 @@ from fe_contact.progress import silent
 from fe_contact.reference import fe
 from fe_contact.settings import WaveNumerics
 from fe_contact.studies.larger_models import sufficient
-from fe_contact.waves.impact import choices_of, left, locked
+from fe_contact.waves.impact import choices_of, left, left_behind
 from fe_contact.waves.moving import Moving
 from fe_contact.waves.targets import half_space
 from fe_contact.waves.targets.half_space import yielding_core
@@ -78,7 +78,7 @@ def test_what_never_yields_moves_as_without_yield() -> None:
     assert found.samples[-1].energies.plastic == 0.0
     assert all(sample.problems == 1 for sample in found.samples)
     assert found.final.flowed is not None
-    assert locked(moving.body, found.final.flowed).energy == 0.0
+    assert left_behind(moving.body, found.final.flowed).energy == 0.0
 
 
 @pytest.mark.tenth
@@ -147,7 +147,7 @@ def test_flow_that_closes_in_slowly_is_found_in_as_many_guesses_as_it_has_direct
     answer, pull = turned * kept @ turned.T, random.normal(size=40)
     exact = np.linalg.solve(np.eye(40) - answer, pull)
     body = Answering(lambda held: answer @ held + pull)
-    found, change = settled(lambda softening: lambda held: held, np.zeros(40), body, body.at_rest, 1.0)
+    found, change = flow_of_step(lambda softening: lambda held: held, np.zeros(40), body, body.at_rest, 1.0)
     np.testing.assert_array_equal(found.forces, body.holds(change))
     assert np.linalg.norm(found.forces - exact) < 1e-3 * np.linalg.norm(exact)
     assert body.asked <= 10
@@ -157,7 +157,7 @@ def test_flow_that_no_guess_finds_has_a_name() -> None:
     random = np.random.default_rng(5)
     body = Answering(lambda held: random.normal(size=40))
     with pytest.raises(FlowNotSettled, match=r"plastic flow not found at t = 2 s; cure: raise numerics\.steps"):
-        settled(lambda softening: lambda held: held, np.zeros(40), body, body.at_rest, 2.0)
+        flow_of_step(lambda softening: lambda held: held, np.zeros(40), body, body.at_rest, 2.0)
 
 
 class Answering:
