@@ -47,6 +47,7 @@ ROWS, NEWTON = 200, 8  # steps in an impact that tells of a modulus, and of Newt
 # Hertz: the first yield, below the surface, is where the peak pressure is 1.6 Y (Johnson, ISBN 978-0-521-34796-9).
 FIRST_YIELD = 1.6
 LIKE_HALF_SPACES = (HalfSpace, SphereTarget, Plane)  # near the contact
+TIP = 1e-4  # rounding: of a tip's radius, where the gap beside it is a parabola to 1e-8
 ALMOST_FLAT = 1.0 + 1e-6  # rounding: exponent of the force below which a profile counts as flat
 FLOW = 0.047  # 1/(1 + FLOW ln^2 w): how force falls behind Hertz'; tests/fe/test_plastic.py finds it again
 
@@ -420,13 +421,18 @@ def plasticity(scene: Scene | Indenter, model: Model, peak: Peak, share: float =
 
 
 def adhesion(scene: Scene, peak: Peak) -> LedgerEntry:
-    """The pull-off force (3/2) pi w R of Johnson, Kendall and Roberts 1971, doi 10.1098/rspa.1971.0141."""
-    work = scene.geometry.material.work_of_adhesion
+    """The pull-off force (3/2) pi w R of Johnson, Kendall and Roberts 1971, doi 10.1098/rspa.1971.0141; of two round
+    bodies 1/R = 1/R1 + 1/R2.
+    """
+    geometry, target = scene.geometry, scene.target
+    work = geometry.of_pair("work_of_adhesion")
     if work is None:
-        return LedgerEntry("adhesion", "neglected", None, f"needs {scene.target.owner}.material.work_of_adhesion")
-    radius = scene.geometry.shape.tip_radius
-    if radius is None:
+        return LedgerEntry("adhesion", "neglected", None, f"needs {target.owner}.material.work_of_adhesion")
+    tip = geometry.shape.tip_radius
+    if tip is None or geometry.shape.plane:
         return LedgerEntry("adhesion", "neglected", None, "the pull-off force is known for a round tip only")
+    near = TIP * tip
+    radius = near**2 / (-2.0 * float(target.overlap(geometry.shape, near, 0.0)))
     return LedgerEntry("adhesion", "neglected", 1.5 * math.pi * work * radius / peak.force, "JKR pull-off force")
 
 
@@ -437,7 +443,7 @@ def friction(scene: Scene | Indenter, model: Model, peak: Peak, impact: bool = F
     bodies: at nu = 0.49 a punch that sticks bears some 0.5 % more by finite elements where a body flows, 0.02 % before.
     """
     geometry = scene.geometry
-    shape, target, coefficient = geometry.shape, geometry.target, geometry.material.friction
+    shape, target, coefficient = geometry.shape, geometry.target, geometry.of_pair("friction")
     if isinstance(shape, Block):
         return []
     effect, treated = "friction", "frictionless"

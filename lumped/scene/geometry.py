@@ -36,6 +36,11 @@ class Geometry:
         """The striker's material, None where it is rigid."""
         return self.striker_material if self.target.deformable else self.material
 
+    def of_pair(self, key: str) -> float | None:
+        """What a key says of both surfaces together, whichever of their materials gives it."""
+        given = [getattr(one, key) for one in (self.material, self.striker_material) if one is not None]
+        return next((value for value in given if value is not None), None)
+
     @property
     def yielding(self) -> list[tuple[str, Material]]:
         """The bodies that have a material, by the table that gives it."""

@@ -143,6 +143,8 @@ def test_a_ledger_bounds_friction_until_its_coefficient_is_given() -> None:
     assert entry(0.1)[0] == pytest.approx((1.0 + 0.1 * slipping(2.0) * beta(0.3)) ** 0.4 - 1.0, rel=1e-3)
     assert entry(2.0)[0] == pytest.approx(most, rel=1e-3)
     assert entry(**{"target.material.nu": 0.5}) == (0.0, None)
+    two = Scene.load("two-spheres", {"striker.material.friction": 0.0})
+    assert two.geometry.of_pair("friction") == 0.0
 
 
 def test_no_elastic_bound_is_told_of_what_yields() -> None:

@@ -159,6 +159,18 @@ def test_adhesion_and_strain_are_simple_ratios() -> None:
     assert found["striker compliance"] is None
 
 
+@pytest.mark.parametrize("part", ["target", "striker"])
+def test_surfaces_stick_by_both_radii_whichever_material_says_how(part: str) -> None:
+    """1/R = 1/R1 + 1/R2 of two spheres; a cylinder in plane strain has no such formula."""
+    peak = Peak(force=2.0, depth=6e-5, contact_radius=6e-4, duration=0.02)
+    scene = Scene.load("two-spheres", {f"{part}.material.work_of_adhesion": 0.05})
+    found = {e.effect: e.estimate for e in model_ledger(scene, peak)}
+    assert found["adhesion"] == pytest.approx(1.5 * math.pi * 0.05 * (0.005 * 0.01 / 0.015) / 2.0, rel=1e-6)
+    line = Scene.load("polymer-half-plane", {"target.material.work_of_adhesion": 0.05})
+    entry = {e.effect: e for e in model_ledger(line, peak)}["adhesion"]
+    assert (entry.estimate, entry.note) == (None, "the pull-off force is known for a round tip only")
+
+
 @pytest.mark.parametrize(("name", "n"), [("polymer-cone", 2.0), ("polymer-power", 1.25), ("polymer-prism", 1.0)])
 @pytest.mark.parametrize("weight", [0.05, 0.5, 5.0])
 def test_gravity_of_a_drop_adds_what_its_equation_of_motion_says(name: str, n: float, weight: float) -> None:
