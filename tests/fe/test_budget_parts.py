@@ -270,7 +270,7 @@ def test_the_work_of_all_marches_is_added_up() -> None:
 
 
 def test_the_work_of_waves_is_that_of_all_runs_their_contacts_and_flights(numerics: WaveNumerics) -> None:
-    """A back-substitution a step, on the unknowns of the run's own body."""
+    """A back-substitution a contact problem and a step of a flight, on the unknowns of the run's own body."""
 
     def run(size: int, flown: int, made: int, *steps: int) -> Any:
         contacts = [SimpleNamespace(march=SimpleNamespace(work=Work(count, 2 * count, 3 * count))) for count in steps]
@@ -280,7 +280,7 @@ def test_the_work_of_waves_is_that_of_all_runs_their_contacts_and_flights(numeri
     runs = certify.WaveRuns(nothing, nothing, nothing, 1)
     runs._runs = {numerics: run(10, 7, 1, 100, 50), numerics.varied(steps=3): run(40, 0, 2, 30)}
     assert runs.spent == 10 * 157 + 40 * 30
-    assert runs.work() == TotalWork(40, 3, 187, marches=3, steps=187, contact_problems=360, iterations=540)
+    assert runs.work() == TotalWork(40, 3, 7 + 360, marches=3, steps=187, contact_problems=360, iterations=540)
     told = list[float]()
     runs.counted = told.append
     for unknowns in (10, 40, 20):
@@ -445,7 +445,7 @@ def test_what_rows_of_a_curve_with_waves_leave_is_told_by_half_of_them(numerics:
     jitter = 1e-3 * np.where(time > 0.0, (-1.0) ** np.arange(801), 0.0)
     march: Any = SimpleNamespace(
         time=time, depth=time, impulse=time**2 * (0.5 - time / 3.0) + time * jitter, first_force=0.0,
-        radius_time=time[1:], radius=time[1:], separated=True, end_spread=0.0, energy={},
+        radius_time=time[1:], radius=time[1:], separated=True, end_spread=0.0, energy={}, dent=None,
     )  # fmt: skip
     strike = Strike(lambda r: r**2, 1.0, 0.1, 0.0, Relaxation(1.0), 10.0)
     given = numerics.varied(steps=800, tolerance=3e-3)

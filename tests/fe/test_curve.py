@@ -56,7 +56,7 @@ def marched(steps: int, end: float, size: float, cut: float) -> tuple[Curve, np.
     impulse, squared = size * time**2 * (end / 2.0 - time / 3.0), 7.0 * time * (end - time)
     march: Any = SimpleNamespace(
         time=time, depth=4.0 * time - 3.0 * time**2, impulse=impulse, first_force=0.0, radius_time=time[1:],
-        radius=np.sqrt(squared[1:]), separated=cut == 1.0, end_spread=0.03 * end, energy={"in": 2.0},
+        radius=np.sqrt(squared[1:]), separated=cut == 1.0, end_spread=0.03 * end, energy={"in": 2.0}, dent=None,
     )  # fmt: skip
     return Curve.of(march, Strike(lambda r: r**2, 3.0, 2.0, 5.0, Relaxation(1.0), 10.0)), time
 
