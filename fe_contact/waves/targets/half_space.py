@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,9 +26,6 @@ from fe_contact.dynamics.march import march
 from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
 from fe_contact.dynamics.stepping import NO_FLOW
 from fe_contact.fields import Fields, nodal_stress, subdivided, written
-from fe_contact.plastic.core import YieldingCore
-from fe_contact.plastic.ground import yielding_of
-from fe_contact.plastic.impact import curve_of, pilot
 from fe_contact.settings import RANGES, Given, WaveNumerics
 from fe_contact.waves.balls import Ball, flying
 from fe_contact.waves.impact import choices_of
@@ -40,6 +38,9 @@ from lumped.laws.mdr import ImpactScales
 from lumped.result.result import Result
 from lumped.scene.geometry import changing_faults
 from lumped.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from fe_contact.plastic.core import YieldingCore
 
 NEAREST = 20.0  # contact radii: the far springs' own need
 # Growth of elements into the body, of one along the radius a unit distance: where several contacts follow each other,
@@ -89,6 +90,8 @@ def _check_flows(scene: Scene, scheme: str) -> None:
 
 def yielding_scales(scene: Scene) -> ImpactScales:
     """Of an impact on what yields, by a coarse mesh without inertia. Raises NotReached."""
+    from fe_contact.plastic.impact import curve_of, pilot  # late: only what yields needs it
+
     still = scene.changed({"model.inertia": False})
     march = pilot(still).march
     about = {name: value or 0.0 for name, value in curve_of(march, still).quantities.items()}
@@ -136,6 +139,9 @@ def moving(scene: Scene, numerics: WaveNumerics) -> Moving:
 
 def yielding_core(scene: Scene, numerics: WaveNumerics) -> YieldingCore:
     """What may flow in the half-space of a scene that yields."""
+    from fe_contact.plastic.core import YieldingCore  # late: only what yields needs it
+    from fe_contact.plastic.ground import yielding_of
+
     material, unit = scene.geometry.material, unit_of(scene, numerics)
     strength, hardening = material.yield_strength, material.hardening_modulus or 0.0
     assert strength is not None  # see plasticity_faults
