@@ -22,6 +22,7 @@ from lumped import BadInput, Result, Scene, laws
 from lumped.load_curves.hertz import Hertz
 from lumped.result.result import RULED_ABSOLUTE, RULED_RELATIVE
 from lumped.scene.indenter import Indenter
+from lumped.schema import Table
 from lumped.solvers.rod import Waves
 
 CASES = 40
@@ -181,13 +182,19 @@ def test_a_weight_pulls_until_the_very_end() -> None:
         assert found.error < 3e-4
 
 
+def ball_on_rod(striker: Table, rod: Table, material: Table) -> Scene:
+    """An elastic rod with waves, struck by a ball that is a parabola."""
+    target = {"shape": "rod", **rod, "material": {"law": "elastic", **material}}
+    model = {"inertia": True, "profile": "parabola"}
+    return Scene.from_dict({"striker": {"shape": "sphere", **striker}, "target": target, "model": model})
+
+
 @pytest.mark.tenth
 def test_a_heavy_ball_meets_the_first_front_long_before_it_turns() -> None:
     """Its dent presses as hard as a front after a hundredth of the transit: elements at first are as short as that."""
-    striker = {"shape": "sphere", "radius": 6.7e-3, "mass": 0.05, "velocity": 0.22}
-    material = {"law": "elastic", "E": 4e6, "nu": 0.42, "density": 2950.0}
-    target = {"shape": "rod", "area": 5e-6, "length": 0.17, "end": "free", "material": material}
-    scene = Scene.from_dict({"striker": striker, "target": target, "model": {"inertia": True, "profile": "parabola"}})
+    striker = {"radius": 6.7e-3, "mass": 0.05, "velocity": 0.22}
+    material = {"E": 4e6, "nu": 0.42, "density": 2950.0}
+    scene = ball_on_rod(striker, {"area": 5e-6, "length": 0.17, "end": "free"}, material)
     found, truth = simulate(scene, "fe", {}), exact(scene)
     assert found.converged, found.message
     for name in ("peak_force", "peak_depth", "duration", "restitution", "impulse"):
@@ -215,10 +222,9 @@ def test_a_dent_that_fades_ends_within_what_rounding_moves_its_paths(slowness: f
 @pytest.mark.tenth
 def test_a_striker_that_waves_have_all_but_stopped_leaves_when_rounding_lets_it() -> None:
     """With 5e-8 of its speed: two marches agreed by chance in when, and the bar was 1.7 times too small."""
-    striker = {"shape": "sphere", "radius": 6.75358e-3, "mass": 0.162837, "velocity": 0.03865}
-    material = {"law": "elastic", "E": 1.28871e6, "nu": 0.267088, "density": 740.437}
-    target = {"shape": "rod", "area": 2.55521e-5, "length": 0.05, "end": "absorbing", "material": material}
-    scene = Scene.from_dict({"striker": striker, "target": target, "model": {"inertia": True, "profile": "parabola"}})
+    striker = {"radius": 6.75358e-3, "mass": 0.162837, "velocity": 0.03865}
+    material = {"E": 1.28871e6, "nu": 0.267088, "density": 740.437}
+    scene = ball_on_rod(striker, {"area": 2.55521e-5, "length": 0.05, "end": "absorbing"}, material)
     found = simulate(scene, "fe", {"tolerance": 0.1, "steps": 1600}).quantities["duration"]
     known = laws.get("rod_waves").of(scene).simulate(scene, 1e-9).quantities["duration"]
     assert abs(found.value - known.value) <= found.error + known.error
