@@ -79,7 +79,7 @@ class PressedAgain:
         """At the largest force, which is at a ``time``, s; and the amount of plastic strain at the points (n,)."""
         ground, peak, unit = self.ground, self.peak, self.course.unit * self.peak.scale
         basis, nodes = ground.basis, self._nodes
-        gradient = ground.encounter.body.core.gradient(peak.displacement)
+        gradient = ground.met.body.core.gradient(peak.displacement)
         stress = ground.yielding.flowed(gradient, *peak.state).stress[STRESS]
         *stresses, amount = at_nodes(basis, ground.elements, np.concatenate([stress, peak.state[1][None]]))
         triangles = subdivided(basis).reshape(basis.nelems, -1, 3)[ground.elements].reshape(-1, 3)
@@ -94,7 +94,7 @@ class PressedAgain:
             displacement=unit * peak.displacement.reshape(-1, 2)[nodes],
             stress=self.course.modulus * np.stack(stresses, axis=1)[nodes],
             pressure=self.course.modulus
-            * np.where(touching, np.interp(place[:, 0], ground.points, peak.pressure.ravel()), 0.0),
+            * np.where(touching, np.interp(place[:, 0], ground.points, peak.pressure), 0.0),
             contact=touching.astype(np.int64),
         )
         return found, np.maximum(amount[nodes], 0.0)

@@ -6,7 +6,7 @@ rim it stays as it is.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -21,10 +21,10 @@ from fe_contact.assembly.surface import flat
 from fe_contact.bodies.pressing import held
 from fe_contact.errors import BodyTooFine
 from fe_contact.plastic.growing import Growing
+from fe_contact.plastic.settling import Met, Strike
 from fe_contact.solids.base import State
 from fe_contact.solids.bulk import Bulk, CoredBody
-from fe_contact.solids.contact import Obstacle, OnUndeformed, Overlap, Skin
-from fe_contact.solids.newton import Encounter
+from fe_contact.solids.contact import Skin
 from fe_contact.solids.plastic import Plastic
 from lumped.materials.plasticity import Yielding
 from lumped.shapes import Shape
@@ -57,30 +57,13 @@ class Sizes:
 
 
 @dataclass(frozen=True, eq=False)
-class Nearer:
-    """An obstacle that overlaps by ``more`` (facets, points) than it does."""
-
-    obstacle: Obstacle
-    more: Array
-
-    def overlap(self, place: Array, displacement: Array, depth: float) -> Overlap:
-        """See :class:`Obstacle`."""
-        found = self.obstacle.overlap(place, displacement, depth)
-        return found._replace(depth=found.depth + self.more)
-
-    def along(self, place: Array) -> Array:
-        """See :class:`Obstacle`."""
-        return self.obstacle.along(place)
-
-
-@dataclass(frozen=True, eq=False)
 class Ground:
     """What a rigid ``profile`` is pressed into, on a mesh of some scale; ``unit`` of these scales, m; ``yielding`` in
     units of E*; ``elements`` (e,) of the ``basis``: those that may yield, up to the radius ``core``; ``growing``: how
     the mesh grows, None under a rim.
     """
 
-    encounter: Encounter
+    met: Met
     profile: Shape
     unit: float
     yielding: Yielding
@@ -95,9 +78,12 @@ class Ground:
         """Whether all contacts end at radius 1."""
         return self.growing is None
 
-    def meeting(self, scale: float, more: Array) -> Encounter:
-        """Of the mesh ``scale`` long, and a striker that overlaps it by ``more`` (facets, points)."""
-        return replace(self.encounter, obstacle=Nearer(OnUndeformed(self.profile, scale * self.unit), more))
+    def strike(self, scale: float, depth: float, stiffness: float, given: Array) -> Strike:
+        """At a ``depth``, in units of a mesh ``scale`` long; a penalty's ``stiffness`` that only mends the pressure
+        ``given`` (q,).
+        """
+        rise = self.profile.height(scale * self.unit * self.points) / (scale * self.unit)
+        return Strike(depth - rise + given / stiffness, stiffness * self.met.skin.weights.ravel())
 
     def carried(self, state: State, growth: float) -> State:
         """What the points remember of a mesh that has become ``growth`` times as large."""
@@ -140,17 +126,17 @@ class Ground:
     @property
     def rest(self) -> State:
         """What the points remember that nothing has pressed."""
-        return at_rest(self.encounter.body.core.weight.shape)
+        return at_rest(self.met.body.core.weight.shape)
 
     @cached_property
     def points(self) -> Array:
         """Radii of the quadrature points of the surface, ascending (q,)."""
-        return np.asarray(self.encounter.skin.place[0].ravel())
+        return np.asarray(self.met.skin.place[0].ravel())
 
     @property
     def unknowns(self) -> int:
         """Of every Newton step."""
-        return self.encounter.body.free.size
+        return self.met.body.free.size
 
     def contained(self, state: State) -> bool:
         """Whether nothing has yielded near the end of the core."""
@@ -158,14 +144,14 @@ class Ground:
 
     def stored(self, displacement: Array, state: State) -> float:
         """Elastic energy of a displacement (2 N,) in units of E* and length."""
-        body = self.encounter.body
+        body = self.met.body
         points = self.yielding.stored(body.core.gradient(displacement), state[0])
         rim = displacement[body.rim]
         return float(np.vdot(body.core.weight, points) + 0.5 * rim @ body.rest @ rim)
 
     def worked(self, state: State) -> float:
         """Plastic work in these units."""
-        return float(np.vdot(self.encounter.body.core.weight, self.yielding.worked(state[1])))
+        return float(np.vdot(self.met.body.core.weight, self.yielding.worked(state[1])))
 
 
 @cached
@@ -174,9 +160,8 @@ def ground_of(profile: Shape, unit: float, yielding: Yielding, poisson: float, s
     meshed = _meshed(sizes, poisson)
     rest = at_rest(meshed.core.weight.shape)
     body = CoredBody.of(meshed.core, Plastic(yielding), meshed.stiffness, meshed.fixed, rest)
-    encounter = Encounter.of(body, meshed.skin, OnUndeformed(profile, unit))
     return Ground(
-        encounter=encounter,
+        met=Met.of(body, meshed.skin, yielding),
         profile=profile,
         unit=unit,
         yielding=yielding,

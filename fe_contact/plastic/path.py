@@ -20,13 +20,11 @@ import numpy as np
 from fe_contact.assembly.forms import Array
 from fe_contact.errors import MemoryTooSmall
 from fe_contact.plastic.ground import GUARD, Ground
+from fe_contact.plastic.settling import FlowUnsettled, Stiffness
 from fe_contact.progress import Counted, uncounted
 from fe_contact.solids.base import State
-from fe_contact.solids.contact import Points
-from fe_contact.solids.newton import Equilibrium, EquilibriumLost, balanced
 from lumped.errors import NotReached
 
-SETTLED = 1e-9  # of the energy, what the last iteration may change: it leaves the square of its share
 GUESSED = 0.3  # of the pressure: where the one given is further off it is given again
 GIVEN = 4  # times at most
 GAMMA = 1.0 - math.sqrt(0.5)  # share of a step that each stage takes
@@ -64,7 +62,7 @@ class PlasticFlowSlow(NotReached):
 
 class Station(NamedTuple):
     """A body pressed ``depth`` deep: force, contact radius, in units of the ground; on its mesh, ``scale`` long in
-    these units, displacement (2 N,) in units of the mesh, state, pressure (facets, points). ``worked``: plastic work so
+    these units, displacement (2 N,) in units of the mesh, state, pressure (q,). ``worked``: plastic work so
     far, in units of the ground; ``middle``: the end of the first stage of the step that led here; ``began`` (2 N,): the
     displacement that the stage which led here began with, on its mesh.
     """
@@ -82,7 +80,7 @@ class Station(NamedTuple):
 
 
 class Counts(NamedTuple):
-    """Of contact problems and Newton iterations."""
+    """Of contact problems, and guesses of what flows in them."""
 
     problems: int = 0
     iterations: int = 0
@@ -95,7 +93,8 @@ class Counts(NamedTuple):
 class Presser:
     """Takes a ground from place to place; ``penalty`` in units of E* over contact radius; ``unit`` m, for words;
     ``spread``: the power of the depth that a contact radius is expected to grow with; ``most`` iterations in all;
-    ``counted`` is told of every contact problem.
+    ``counted`` is told of every contact problem;
+    ``known``: the stiffness that the last one was solved with.
     """
 
     ground: Ground
@@ -105,51 +104,54 @@ class Presser:
     most: int | None = None
     counted: Counted = uncounted
     counts: Counts = field(default_factory=Counts)
+    known: Stiffness | None = None
 
     def settled(
         self, state: State, depth: float, displacement: Array, pressure: Array, radius: float, scale: float
     ) -> Station:
         """Equilibrium at a depth after ``state`` on a mesh ``scale`` long; the other three are guesses.
 
-        The penalty only mends the pressure given: where that is far off, it is given again. Raises EquilibriumLost.
+        The penalty only mends the pressure given: where that is far off, it is given again. Raises FlowUnsettled.
         """
-        stiffness = self.penalty * scale / radius
-        touching: Points = (self.ground.points < radius / scale).reshape(pressure.shape)
+        ground, stiffness, known = self.ground, self.penalty * scale / radius, self.known
+        areas, touching = ground.met.skin.weights.ravel(), ground.points < radius / scale
         for number in range(GIVEN):
             last = number == GIVEN - 1
-            encounter = self.ground.meeting(scale, pressure / stiffness)
-            found = balanced(encounter, displacement, depth / scale, stiffness, state, touching, SETTLED)
-            self._count(found, depth)
-            touch = found.balance.touch
-            wrong = np.vdot(touch.skin.weights, np.abs(touch.pressure - pressure)) > GUESSED * found.balance.force
-            displacement, pressure, touching = found.balance.displacement, touch.pressure, touch.touching
+            strike = ground.strike(scale, depth / scale, stiffness, pressure)
+            found = ground.met.settled(displacement, strike, state, touching, known)
+            self._count(found.guesses, depth)
+            forces, before = strike.pressed(found.at.rise), pressure
+            displacement, known, pressure = found.at.displacement, found.stiffness, forces / areas
+            within = strike.within(found.at.rise)
+            touching = within > 0.0
+            wrong = float(areas @ np.abs(pressure - before)) > GUESSED * float(forces.sum())
             if not wrong or last:
                 break
-        after, reached = found.balance.loaded.answer.state, self._edge(found)
+        self.known, after = known, (found.at.flowed.strain, found.at.flowed.amount)
+        reached = self._edge(within)
         if not np.isfinite(reached):
             raise MemoryTooSmall(self.unit * scale)
-        if not self.ground.contained(after):
-            raise PlasticZoneWide(f"depth {self.unit * depth:.3g} m", self.ground.core)
-        return Station(depth, displacement, after, touch.force * scale**2, pressure, reached * scale, scale)
+        if not ground.contained(after):
+            raise PlasticZoneWide(f"depth {self.unit * depth:.3g} m", ground.core)
+        return Station(depth, displacement, after, float(forces.sum()) * scale**2, pressure, reached * scale, scale)
 
-    def _count(self, found: Equilibrium, depth: float) -> None:
-        self.counts += (1, found.iterations)
+    def _count(self, guesses: int, depth: float) -> None:
+        self.counts += (1, guesses)
         self.counted(1.0)
         if self.most is not None and self.counts.iterations > self.most:
             raise PlasticFlowSlow(self.unit * depth, self.most)
 
-    def _edge(self, found: Equilibrium) -> float:
-        """Where the gap closes, between the last point that touches and the next: it opens as the power 3/2 of the
+    def _edge(self, within: Array) -> float:
+        """Where the gap closes, by how far points are ``within`` the striker (q,): between the last point that touches and the next: it opens as the power 3/2 of the
         distance from there (Johnson, Contact Mechanics, 1985, 5.1), which two points tell.
         """
         if self.ground.rim:
             return 1.0
-        touch, points = found.balance.touch, self.ground.points
-        inside = np.flatnonzero(touch.touching.ravel())
+        points, inside = self.ground.points, np.flatnonzero(within > 0.0)
         last = int(inside[-1]) if inside.size else 0
         if last + 2 >= points.size:
             return np.inf
-        first, second = np.maximum(-touch.overlap.depth.ravel()[last + 1 : last + 3], 0.0) ** (2.0 / 3.0)
+        first, second = np.maximum(-within[last + 1 : last + 3], 0.0) ** (2.0 / 3.0)
         back = first / (second - first) if second > first else np.inf
         return float(max(points[last + 1] - back * (points[last + 2] - points[last + 1]), points[last]))
 
@@ -162,7 +164,7 @@ class Presser:
         try:
             yield self._stepped(before, here, depth)
             return
-        except EquilibriumLost:
+        except FlowUnsettled:
             if halvings == 0:
                 raise PlasticFlowLost(self.unit * depth) from None
         last = here
@@ -172,7 +174,7 @@ class Presser:
         yield from self.loaded(before, last, depth, halvings - 1)
 
     def _stepped(self, before: Station, here: Station, depth: float) -> Station:
-        """Two stages. Raises EquilibriumLost."""
+        """Two stages. Raises FlowUnsettled."""
         stage, spread = here.depth + GAMMA * (depth - here.depth), self._spread_of(before, here)
         middle = self._stage(here.state, (before, here.middle or here), here, stage, spread)
         on = (1.0 - GAMMA) / GAMMA
@@ -221,8 +223,8 @@ class Presser:
 
     def first(self, depth: float, radius: float) -> Station:
         """From rest to a first depth at once, with a contact radius to expect. Raises PlasticFlowLost."""
-        ground, encounter = self.ground, self.ground.encounter
-        displacement, pressure = np.zeros(encounter.body.core.size), np.zeros(encounter.skin.weights.shape)
+        ground, met = self.ground, self.ground.met
+        displacement, pressure = np.zeros(met.body.core.size), np.zeros(met.skin.weights.size)
         for _ in range(FITTED):
             scale = radius
             found = self._projected(ground.rest, depth, displacement, pressure, radius, scale)
@@ -236,7 +238,7 @@ class Presser:
     ) -> Station:
         try:
             return self.settled(state, depth, displacement, pressure, radius, scale)
-        except EquilibriumLost:
+        except FlowUnsettled:
             raise PlasticFlowLost(self.unit * depth) from None
 
     def released(self, here: Station, steps: int, power: float) -> list[Station]:
@@ -277,9 +279,9 @@ class Presser:
 
 def _shrunk(points: Array, here: Station, radius: float, share: float) -> Array:
     """A ``share`` of the pressure of a place, on a smaller contact radius; radii of ``points`` of the mesh (n,)."""
-    found = np.interp(points * (here.radius / radius), points, here.pressure.ravel())
+    found = np.interp(points * (here.radius / radius), points, here.pressure)
     within = points < radius / here.scale
-    return np.asarray((share * np.where(within, found, 0.0)).reshape(here.pressure.shape))
+    return np.asarray(share * np.where(within, found, 0.0))
 
 
 def parting(before: Station, here: Station, power: float) -> float:

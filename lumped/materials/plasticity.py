@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -23,15 +24,31 @@ VOLUME = np.array([1.0, 0.0, 0.0, 1.0, 1.0])  # of a gradient: its trace
 @dataclass(frozen=True, eq=False)
 class PlasticStep:
     """What points answer at the end of a step, of any shape (...): ``stress`` (5, ...) by the components of the
-    gradient, Pa; ``tangent`` its consistent derivative (5, 5, ...); ``energy`` (...), J/m3, the incremental potential
-    of both; ``strain`` (4, ...) and ``amount`` (...) of plastic strain in the end.
+    gradient, Pa; ``energy`` (...), J/m3, the incremental potential of it and of the tangent; ``strain`` (4, ...) and
+    ``amount`` (...) of plastic strain in the end. Of the trial deviator the share that is ``kept``, by how much the
+    body is ``softer`` along its ``direction`` (4, ...), and the ``moduli`` of bulk and shear, Pa.
     """
 
     stress: Array
-    tangent: Array
     energy: Array
     strain: Array
     amount: Array
+    kept: Array
+    softer: Array
+    direction: Array
+    moduli: tuple[float, float]
+
+    @cached_property
+    def tangent(self) -> Array:
+        """Consistent derivative of the stress, (5, 5, ...): K 1(x)1 + 2G (kept I_dev - softer n(x)n)."""
+        bulk, shear = self.moduli
+        deviatoric = SYMMETRIC.T @ (OFTEN[:, None] * SYMMETRIC) - np.outer(VOLUME, VOLUME) / 3.0
+        normal = self.direction[GRADIENT]
+        tangent = -2.0 * shear * self.softer * normal[:, None] * normal[None]
+        tangent += 2.0 * shear * np.multiply.outer(deviatoric, self.kept)
+        fixed = bulk * np.outer(VOLUME, VOLUME)
+        tangent += fixed.reshape(5, 5, *[1] * self.kept.ndim)
+        return np.asarray(tangent)
 
 
 @dataclass(frozen=True)
@@ -65,10 +82,13 @@ class Yielding:
         softer = np.where(yields, 3.0 * shear / rigid - (1.0 - kept), 0.0)
         return PlasticStep(
             stress=stress,
-            tangent=self._tangent(kept, softer, direction),
             energy=0.5 * self.bulk * volume**2 + shear * length**2 - beyond**2 / (2.0 * rigid),
             strain=strain + ROOT * more * direction,
             amount=amount + more,
+            kept=kept,
+            softer=softer,
+            direction=direction,
+            moduli=(self.bulk, self.shear),
         )
 
     def stored(self, gradient: Array, strain: Array) -> Array:
@@ -87,13 +107,3 @@ class Yielding:
         whole[[0, 2, 3]] -= volume / 3.0
         trial = whole - strain
         return volume, trial, np.sqrt(np.einsum("c,c...,c...->...", OFTEN, trial, trial))
-
-    def _tangent(self, kept: Array, softer: Array, direction: Array) -> Array:
-        """K 1(x)1 + 2G (kept I_dev - softer n(x)n), (5, 5, ...)."""
-        deviatoric = SYMMETRIC.T @ (OFTEN[:, None] * SYMMETRIC) - np.outer(VOLUME, VOLUME) / 3.0
-        normal = direction[GRADIENT]
-        tangent = -2.0 * self.shear * softer * normal[:, None] * normal[None]
-        tangent += 2.0 * self.shear * np.multiply.outer(deviatoric, kept)
-        fixed = self.bulk * np.outer(VOLUME, VOLUME)
-        tangent += fixed.reshape(5, 5, *[1] * kept.ndim)
-        return np.asarray(tangent)

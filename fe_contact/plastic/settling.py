@@ -1,0 +1,271 @@
+"""Equilibrium of a body that yields, under a striker: one stiffness serves several depths, flow is a load.
+
+With the stiffness K of a body as it answered once, a displacement u is in balance where
+
+    K u + p(u) = h ,    h = K u - f(u) ,
+
+f what the body answers and p what the striker presses with. For a guess of h the rest is a contact on a linear body,
+solved exactly at its surface alone, behind which K is eliminated. Its end tells another h, and Anderson's mixing closes
+in, as it does for a body in motion (:mod:`fe_contact.dynamics.flow`). On a mesh that grows with the contact all steps
+are nearly alike, so that K serves several of them. Where guesses close in slowly, K is made anew: the tangent at that
+of least energy, of which the first guess is Newton's step, shortened until the energy falls.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from fe_contact.assembly.forms import Array, Matrix
+from fe_contact.assembly.interior import Eliminated, elimination_order
+from fe_contact.dynamics.flow import Mixing
+from fe_contact.solids.base import PointAnswer, State
+from fe_contact.solids.bulk import CoredBody, Loaded, Pattern
+from fe_contact.solids.contact import Skin
+from lumped.errors import NotReached
+from lumped.materials.plasticity import PlasticStep, Yielding
+
+SETTLED = 1e-5  # measured: out of balance, of the forces that press; with 1e-7 the largest force changes by 3e-6
+FAR = 0.3  # work: of the same, from where a stiffness is made anew at once
+WORTH = 7.0  # work: guesses to go for which it is: as dear as that, on coarse meshes and on fine ones
+GUESSES, RENEWED = 12, 20  # work: at most, of one stiffness, and of these; a step that needs more is made in halves
+LOWER = 1e-12  # rounding: of the energy
+SHORTEST = 1e-3  # share of Newton's step below which the energy stands still
+CLOSED = 1e-11  # rounding: of the energy of a contact on a linear body, which is a small part of what it is told by
+MOST_CLOSINGS = 60  # work: two or three are usual
+ENOUGH = 1e-4  # share of what the slope promises that a step has to lessen that energy by
+
+
+class FlowUnsettled(NotReached):
+    """No equilibrium was found."""
+
+    def __init__(self) -> None:
+        super().__init__("the flow did not settle")
+
+
+class Strike(NamedTuple):
+    """A striker at the points (n,) of a skin: how far it overlaps what is not displaced, and the penalty's springs."""
+
+    overlap: Array
+    springs: Array
+
+    def within(self, rise: Array) -> Array:
+        """How far points that rose (n,) are inside the striker, (n,); below zero outside."""
+        return self.overlap + rise
+
+    def pressed(self, rise: Array) -> Array:
+        """Forces at these points, (n,)."""
+        return np.asarray(self.springs * np.maximum(self.within(rise), 0.0))
+
+    def energy(self, rise: Array) -> float:
+        """Of the springs."""
+        return 0.5 * float(self.pressed(rise) @ np.maximum(self.within(rise), 0.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Displaced:
+    """A body displaced by (2 N,): what has ``flowed``, the ``forces`` (free,) that it answers with, how far the points
+    of its skin rose (n,), the ``energy`` of body and springs.
+    """
+
+    displacement: Array
+    flowed: PlasticStep
+    forces: Array
+    rise: Array
+    energy: float
+
+
+@dataclass(frozen=True, eq=False)
+class Stiffness:
+    """Of a body by its free degrees of freedom, and what is left of it at its surface."""
+
+    matrix: Matrix
+    eliminated: Eliminated
+
+
+class Settled(NamedTuple):
+    """Equilibrium ``at`` a displacement, found in so many ``guesses``; the ``stiffness`` it was found with."""
+
+    at: Displaced
+    guesses: int
+    stiffness: Stiffness
+
+
+@dataclass(frozen=True, eq=False)
+class Met:
+    """A ``body`` whose ``skin`` a striker meets along the vertical.
+
+    The last m of its free degrees of freedom are those of its surface along that: ``reach`` (n, m) tells by them how
+    far the n points of the skin rise. ``pattern`` of the body's matrix.
+    """
+
+    body: CoredBody
+    skin: Skin
+    yielding: Yielding
+    reach: Array
+    pattern: Pattern
+
+    @classmethod
+    def of(cls, body: CoredBody, skin: Skin, yielding: Yielding) -> Met:
+        """Raises nothing: makes the pattern, its rows in the order of their elimination."""
+        along = skin.dofs[:, 1::2]
+        surface = np.unique(along)
+        blocks = [body.core.dofs, body.rim[None]]
+        inner = np.setdiff1d(body.free, surface)
+        order = elimination_order(Pattern.of(blocks, inner, body.core.size).definite)
+        free = np.concatenate([inner[order], surface])
+        reach = np.zeros((*skin.weights.shape, surface.size))
+        facets, points = np.indices(skin.weights.shape)
+        reach[facets[..., None], points[..., None], np.searchsorted(surface, along)[:, None]] = skin.trace
+        body = CoredBody(body.core, body.response, body.rest, body.pull, body.rim, free)
+        pattern = Pattern.of(blocks, free, body.core.size)
+        return cls(body, skin, yielding, reach.reshape(-1, surface.size), pattern)
+
+    def displaced(self, displacement: Array, strike: Strike, state: State) -> Displaced:
+        """By (2 N,), after ``state``."""
+        body, core = self.body, self.body.core
+        flowed = self.yielding.flowed(core.gradient(displacement), *state)
+        loaded = Loaded(core, PointAnswer(flowed.stress, np.zeros((5, 5)), flowed.energy))
+        pulled = body.rest @ displacement[body.rim]
+        forces = loaded.forces
+        forces[body.rim] += pulled
+        rise = self.reach @ displacement[body.free[-self.reach.shape[1] :]]
+        energy = loaded.energy + 0.5 * float(displacement[body.rim] @ pulled) + strike.energy(rise)
+        return Displaced(displacement, flowed, forces[body.free], rise, energy)
+
+    def stiffness(self, here: Displaced) -> Stiffness:
+        """The tangent of a body."""
+        body, flowed = self.body, here.flowed
+        loaded = Loaded(body.core, PointAnswer(flowed.stress, flowed.tangent, flowed.energy))
+        matrix = self.pattern.matrix([loaded.matrices(), body.rest[None]])
+        return Stiffness(matrix, Eliminated.of(matrix, self.reach.shape[1]))
+
+    def settled(
+        self,
+        start: Array,
+        strike: Strike,
+        state: State,
+        touching: npt.NDArray[np.bool_],
+        stiffness: Stiffness | None = None,
+    ) -> Settled:
+        """From a displacement (2 N,) and points (n,) that touch to begin with. Raises FlowUnsettled."""
+        here, guesses = self.displaced(start, strike, state), 0
+        for _ in range(RENEWED):
+            anew = stiffness is None
+            known = self.stiffness(here) if stiffness is None else stiffness
+            if anew or guesses == 0:
+                closing = Closing(self, known, strike, state)
+            here, more, balanced = closing.closed_in(here, touching if guesses == 0 else None, anew)
+            guesses += more
+            if balanced:
+                return Settled(here, guesses, known)
+            stiffness = None
+        raise FlowUnsettled
+
+
+@dataclass(frozen=True, eq=False)
+class Closing:
+    """Guesses of what a body of one stiffness holds beside it, under a striker."""
+
+    met: Met
+    stiffness: Stiffness
+    strike: Strike
+    state: State
+
+    def closed_in(
+        self, here: Displaced, touching: npt.NDArray[np.bool_] | None, anew: bool
+    ) -> tuple[Displaced, int, bool]:
+        """Where guesses from ``here`` led, how many they were, and whether it is in balance there; if not, it is the
+        one of least energy. ``anew``: whether the stiffness is the tangent here.
+        """
+        free, matrix = self.met.body.free, self.stiffness.matrix
+        guess, mixing = matrix @ here.displacement[free] - here.forces, Mixing()
+        best, missed = here, list[float]()
+        for number in range(1, GUESSES + 1):
+            there = self._under(guess, here, touching if number == 1 else None)
+            if anew and number == 1 and not there.energy <= here.energy + LOWER * abs(here.energy):
+                return self._shorter(here, there), number, False
+            pressing = self.met.reach.T @ self.strike.pressed(there.rise)
+            missing = matrix @ there.displacement[free] - there.forces - guess
+            missed.append(float(np.linalg.norm(missing)) / max(float(np.linalg.norm(pressing)), np.finfo(float).tiny))
+            if missed[-1] <= SETTLED:
+                return there, number, True
+            here = there
+            if number == 1 or there.energy < best.energy:
+                best = there
+            if slow(missed):
+                break
+            guess = mixing.next(guess, missing)
+        return best, number, False
+
+    def _under(self, guess: Array, here: Displaced, touching: npt.NDArray[np.bool_] | None) -> Displaced:
+        """A linear body that holds a guess (free,), and the striker; it closes from ``here``."""
+        body, solve = self.met.body, self.stiffness.eliminated.solve
+        surface = self.met.reach.shape[1]
+        alone = solve(guess)[-surface:]
+        begin = here.displacement[body.free[-surface:]]
+        load = guess.copy()
+        load[-surface:] -= self.met.reach.T @ self.strike.pressed(self.met.reach @ self._closed(alone, begin, touching))
+        displacement = np.zeros_like(here.displacement)
+        displacement[body.free] = solve(load)
+        return self.met.displaced(displacement, self.strike, self.state)
+
+    def _closed(self, alone: Array, begin: Array, touching: npt.NDArray[np.bool_] | None) -> Array:
+        """The surface (m,) that is ``alone`` (m,) without the striker, under it: Newton's steps, by falling energy.
+
+        They begin with points (n,) that touch, or without these from a surface (m,).
+        """
+        schur, reach, strike = self.stiffness.eliminated.schur, self.met.reach, self.strike
+
+        def springs(touching: npt.NDArray[np.bool_]) -> tuple[Array, Array]:
+            """Those of points that touch: their overlaps' derivative (k, m), and that times their stiffness."""
+            touched = reach[touching]
+            return touched, strike.springs[touching, None] * touched
+
+        def energy(surface: Array) -> float:
+            moved = surface - alone
+            return 0.5 * float(moved @ schur @ moved) + strike.energy(reach @ surface)
+
+        surface = begin
+        if touching is not None:
+            touched, stiff = springs(touching)
+            surface = np.linalg.solve(schur + touched.T @ stiff, schur @ alone - stiff.T @ strike.overlap[touching])
+        here = energy(surface)
+        for _ in range(MOST_CLOSINGS):
+            rise = reach @ surface
+            within = strike.within(rise) > 0.0
+            slope = schur @ (surface - alone) + reach.T @ strike.pressed(rise)
+            touched, stiff = springs(within)
+            step, share = -np.linalg.solve(schur + touched.T @ stiff, slope), 1.0
+            there = energy(surface + step)
+            while there > here + ENOUGH * share * float(slope @ step) + CLOSED * abs(here) and share > SHORTEST:
+                share *= 0.5
+                there = energy(surface + share * step)
+            surface, here = surface + share * step, there
+            if share == 1.0 and np.array_equal(strike.within(reach @ surface) > 0.0, within):
+                return surface
+        raise FlowUnsettled
+
+    def _shorter(self, here: Displaced, there: Displaced) -> Displaced:
+        """The first half, quarter ... of the way at which the energy is lower. Raises FlowUnsettled."""
+        way, share = there.displacement - here.displacement, 0.5
+        while share > SHORTEST:
+            there = self.met.displaced(here.displacement + share * way, self.strike, self.state)
+            if there.energy <= here.energy + LOWER * abs(here.energy):
+                return there
+            share *= 0.5
+        raise FlowUnsettled
+
+
+def slow(missed: list[float]) -> bool:
+    """Whether guesses that missed by these shares close in more slowly than a new stiffness is worth."""
+    if missed[-1] > FAR:
+        return True
+    if len(missed) == 1:
+        return False
+    back = min(len(missed) - 1, 2)
+    rate = (missed[-1] / missed[-1 - back]) ** (1.0 / back)
+    return bool(rate >= 1.0 or np.log(SETTLED / missed[-1]) / np.log(rate) > WORTH)
