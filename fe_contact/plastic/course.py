@@ -406,7 +406,7 @@ class PlasticLoading:
         """One step further, to a depth in units of the course."""
         before, here = self.ends[-2:][0], self.ends[-1]
         taken = list(self.presser.loaded(before, here, depth))
-        self.ends[-1] = here._replace(middle=None, began=None)  # memory: the next step alone is guessed by them
+        self.ends[-2:-1] = [place._replace(middle=None) for place in self.ends[-2:-1]]  # memory: it guesses no more
         self.ends += taken
 
     @property

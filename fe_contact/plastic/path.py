@@ -176,12 +176,11 @@ class Presser:
     def _stepped(self, before: Station, here: Station, depth: float) -> Station:
         """Two stages. Raises FlowUnsettled."""
         stage, spread = here.depth + GAMMA * (depth - here.depth), self._spread_of(before, here)
-        middle = self._stage(here.state, (before, here.middle or here), here, stage, spread)
+        middle = self._stage(here.state, (before.middle or before, here.middle or here), here, stage, spread)
         on = (1.0 - GAMMA) / GAMMA
         began = self.ground.carried(here.state, middle.scale / here.scale)
         state = tuple(start + on * (flowed - start) for start, flowed in zip(began, middle.state, strict=True))
-        like = (here.middle, here) if here.middle else (here, middle)
-        there = self._stage(state, like, middle, depth, spread)
+        there = self._stage(state, (before, here), middle, depth, spread)
         return self._worked(here, there._replace(middle=middle))
 
     def _worked(self, here: Station, there: Station) -> Station:
@@ -205,21 +204,19 @@ class Presser:
         the same one of the step before where that is known; the contact radius as a power of the depth.
         """
         first, last = like
-        share = (depth - here.depth) / (last.depth - first.depth) if last is not first else 0.0
+        on = math.log(depth / last.depth) / math.log(last.depth / first.depth) if last is not first else 0.0
+        start = last.displacement + on * (last.displacement - first.displacement)
+        pressure = np.maximum(last.pressure + on * (last.pressure - first.pressure), 0.0)
         ground, radius = self.ground, here.radius * (depth / here.depth) ** spread
-        began = ground.moved(first.displacement, last.scale / first.scale) if last.began is None else last.began
-        onwards = last.displacement - began
-        pressure = np.maximum(here.pressure + share * (last.pressure - first.pressure), 0.0)
         for _ in range(FITTED):
             scale = 1.0 if ground.rim else max(radius, here.scale)  # what has flowed in is not told again
             growth = scale / here.scale
-            began = ground.moved(here.displacement, growth)
-            start = began + share * onwards
             found = self.settled(ground.carried(state, growth), depth, start, pressure, scale, scale)
             radius = found.radius
             if abs(radius / scale - 1.0) < MISFIT or growth == 1.0:
                 break
-        return found._replace(began=began)
+            start, pressure = found.displacement, found.pressure
+        return found
 
     def first(self, depth: float, radius: float) -> Station:
         """From rest to a first depth at once, with a contact radius to expect. Raises PlasticFlowLost."""
