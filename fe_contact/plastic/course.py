@@ -379,7 +379,7 @@ class PlasticLoading:
         most: int | None = None,
         counted: Counted = uncounted,
     ) -> PlasticLoading:
-        """Nothing is pressed yet; ``most`` iterations are for it, ``counted`` is told of every contact problem."""
+        """Nothing is pressed yet; ``most`` guesses are for it, ``counted`` is told of every contact problem."""
         ground = course.ground(numerics, cut)
         presser = Presser(ground, numerics.penalty, course.unit, course.power - 1.0, most, counted)
         return cls(course, numerics, presser, [])
@@ -406,7 +406,7 @@ class PlasticLoading:
         """One step further, to a depth in units of the course."""
         before, here = self.ends[-2:][0], self.ends[-1]
         taken = list(self.presser.loaded(before, here, depth))
-        self.ends[-2:-1] = [place._replace(middle=None) for place in self.ends[-2:-1]]  # memory: it guesses no more
+        self.ends[-2:-1] = [place._replace(middle=None) for place in self.ends[-2:-1]]  # memory: no guess needs it
         self.ends += taken
 
     @property

@@ -30,12 +30,10 @@ from lumped.materials.plasticity import Yielding
 from lumped.shapes import Shape
 
 if TYPE_CHECKING:
-    from scipy.spatial import cKDTree
     from skfem import MeshTri
 
-CORE, WIDEST = 8.0, 16.0  # contact radii: up to there the material may yield, at first and at most
+CORE, WIDEST = 4.0, 16.0  # contact radii: up to there the material may yield, at first and at most
 GUARD = 0.8  # of the core: if it yields beyond, the core is too small
-BESIDE = 10  # elements, by their middles, of which one holds a place
 NEAR = 0.5  # of the far radius: where the mesh is cut to see what the far field changes
 AT_EDGE = 8.0  # times finer elements are at the edge: four times fewer of them err less there than at 4
 GROWTH = 2.0  # of the mesh: with 1 per unit of length forces differ by less than 2e-4
@@ -88,40 +86,6 @@ class Ground:
     def carried(self, state: State, growth: float) -> State:
         """What the points remember of a mesh that has become ``growth`` times as large."""
         return state if self.growing is None else self.growing.carried(state, growth)
-
-    def moved(self, displacement: Array, growth: float) -> Array:
-        """A displacement (2 N,), in units of the mesh, once that is ``growth`` times as large: to begin with."""
-        if growth == 1.0:
-            return displacement
-        before = displacement.reshape(-1, 2)
-        found = before / growth**2  # as far from a force
-        distance = np.hypot(*self.basis.doflocs)
-        within = np.flatnonzero(growth * distance < min(GUARD * self.core, NEAR * float(distance.max())))
-        found[within] = self._read(before, growth * self.basis.doflocs[:, within]) / growth
-        return np.asarray(found.ravel())
-
-    def _read(self, values: Array, places: Array) -> Array:
-        """Fields by their values at the nodes (N, k), at places (2, n): each in that element beside it that holds it.
-
-        skfem's own search asks every element for every place.
-        """
-        basis, rows = self.basis, np.arange(places.shape[1])
-        beside = np.asarray(self._middles.query(places.T, BESIDE)[1])
-        all_beside = np.repeat(places, BESIDE, axis=1)[:, :, None]
-        inside = basis.mapping.invF(all_beside, tind=beside.ravel()).reshape(2, -1, BESIDE)
-        holds = np.minimum(inside.min(axis=0), 1.0 - inside.sum(axis=0)).argmax(axis=1)
-        element, local = beside[rows, holds], inside[:, rows, holds]
-        shapes = (basis.elem.lbasis(local, k)[0][:, None] for k in range(basis.Nbfun))
-        return np.asarray(
-            sum(shape * values[dofs[element]] for shape, dofs in zip(shapes, basis.element_dofs, strict=True))
-        )
-
-    @cached_property
-    def _middles(self) -> cKDTree:
-        from scipy.spatial import cKDTree  # late: only what yields needs it
-
-        mesh = self.basis.mesh
-        return cKDTree(mesh.p[:, mesh.t].mean(axis=1).T)
 
     @property
     def rest(self) -> State:

@@ -57,7 +57,7 @@ RELEASES = 16  # steps of a release: it errs by where edges cross elements, alik
 # Of the run that tells how deep an impact will go: a soft penalty settles soon where a body flows from the touch on.
 PILOT: Given = {"elements_per_contact": 2.0, "steps": 16, "penalty": 4000.0}
 PILOT_FIRST = 0.01  # of its depth, its first step: the work up to there is 1e-4 of the whole
-MOST_PILOT = 1500  # work: its iterations; 150 where a body begins to yield, 520 where it flows from the touch on
+MOST_PILOT = 1500  # work: its guesses; 280 where a body begins to yield, 640 where it flows from the touch on
 SOFTEST = 0.75  # of the yield strength, on what overlaps: hardly a lower force while a body yields
 
 

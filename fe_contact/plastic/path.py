@@ -53,18 +53,17 @@ class PlasticZoneWide(NotReached):
 
 
 class PlasticFlowSlow(NotReached):
-    """More iterations were taken than there is work for."""
+    """More guesses were taken than there is work for."""
 
     def __init__(self, depth: float, most: int) -> None:
         cure = "cure: a lower striker.velocity or mass, or a larger target.material.hardening_modulus"
-        super().__init__(f"plastic flow takes more than {most} iterations up to depth {depth:.3g} m; {cure}")
+        super().__init__(f"plastic flow takes more than {most} guesses up to depth {depth:.3g} m; {cure}")
 
 
 class Station(NamedTuple):
     """A body pressed ``depth`` deep: force, contact radius, in units of the ground; on its mesh, ``scale`` long in
-    these units, displacement (2 N,) in units of the mesh, state, pressure (q,). ``worked``: plastic work so
-    far, in units of the ground; ``middle``: the end of the first stage of the step that led here; ``began`` (2 N,): the
-    displacement that the stage which led here began with, on its mesh.
+    these units, displacement (2 N,) in units of the mesh, state, pressure (q,). ``worked``: plastic work so far, in
+    units of the ground; ``middle``: the end of the first stage of the step that led here.
     """
 
     depth: float
@@ -76,7 +75,6 @@ class Station(NamedTuple):
     scale: float = 1.0
     worked: float = 0.0
     middle: Station | None = None
-    began: Array | None = None
 
 
 class Counts(NamedTuple):
@@ -92,9 +90,8 @@ class Counts(NamedTuple):
 @dataclass(eq=False)
 class Presser:
     """Takes a ground from place to place; ``penalty`` in units of E* over contact radius; ``unit`` m, for words;
-    ``spread``: the power of the depth that a contact radius is expected to grow with; ``most`` iterations in all;
-    ``counted`` is told of every contact problem;
-    ``known``: the stiffness that the last one was solved with.
+    ``spread``: the power of the depth that a contact radius is expected to grow with; ``most`` guesses in all;
+    ``counted`` is told of every contact problem; ``known``: the stiffness that the last one was solved with.
     """
 
     ground: Ground
@@ -113,22 +110,20 @@ class Presser:
 
         The penalty only mends the pressure given: where that is far off, it is given again. Raises FlowUnsettled.
         """
-        ground, stiffness, known = self.ground, self.penalty * scale / radius, self.known
+        ground, stiffness = self.ground, self.penalty * scale / radius
         areas, touching = ground.met.skin.weights.ravel(), ground.points < radius / scale
         for number in range(GIVEN):
             last = number == GIVEN - 1
             strike = ground.strike(scale, depth / scale, stiffness, pressure)
-            found = ground.met.settled(displacement, strike, state, touching, known)
+            found = ground.met.settled(displacement, strike, state, touching, self.known)
             self._count(found.guesses, depth)
-            forces, before = strike.pressed(found.at.rise), pressure
-            displacement, known, pressure = found.at.displacement, found.stiffness, forces / areas
-            within = strike.within(found.at.rise)
-            touching = within > 0.0
-            wrong = float(areas @ np.abs(pressure - before)) > GUESSED * float(forces.sum())
+            within, forces = strike.within(found.at.rise), strike.pressed(found.at.rise)
+            wrong = float(np.abs(forces - areas * pressure).sum()) > GUESSED * float(forces.sum())
+            displacement, pressure, touching = found.at.displacement, forces / areas, within > 0.0
+            self.known = found.stiffness
             if not wrong or last:
                 break
-        self.known, after = known, (found.at.flowed.strain, found.at.flowed.amount)
-        reached = self._edge(within)
+        after, reached = (found.at.flowed.strain, found.at.flowed.amount), self._edge(within)
         if not np.isfinite(reached):
             raise MemoryTooSmall(self.unit * scale)
         if not ground.contained(after):
@@ -142,8 +137,10 @@ class Presser:
             raise PlasticFlowSlow(self.unit * depth, self.most)
 
     def _edge(self, within: Array) -> float:
-        """Where the gap closes, by how far points are ``within`` the striker (q,): between the last point that touches and the next: it opens as the power 3/2 of the
-        distance from there (Johnson, Contact Mechanics, 1985, 5.1), which two points tell.
+        """Where the gap closes, by how far points are ``within`` the striker (q,).
+
+        That is between the last point that touches and the next: the gap opens as the power 3/2 of the distance from
+        there (Johnson, Contact Mechanics, 1985, 5.1), which two points tell.
         """
         if self.ground.rim:
             return 1.0
@@ -200,8 +197,8 @@ class Presser:
     def _stage(
         self, state: State, like: tuple[Station, Station], here: Station, depth: float, spread: float
     ) -> Station:
-        """From ``here`` to a depth after ``state``; guessed: it goes on as between the two ends of a stage ``like`` it,
-        the same one of the step before where that is known; the contact radius as a power of the depth.
+        """From ``here`` to a depth after ``state``; guessed, in units of the mesh: it goes on as from one to the other
+        end of two stages ``like`` it, those of the steps before; the contact radius as a power of the depth.
         """
         first, last = like
         on = math.log(depth / last.depth) / math.log(last.depth / first.depth) if last is not first else 0.0

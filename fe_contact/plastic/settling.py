@@ -28,10 +28,11 @@ from fe_contact.solids.contact import Skin
 from lumped.errors import NotReached
 from lumped.materials.plasticity import PlasticStep, Yielding
 
+Touching = npt.NDArray[np.bool_]
 SETTLED = 1e-5  # measured: out of balance, of the forces that press; with 1e-7 the largest force changes by 3e-6
 FAR = 0.3  # work: of the same, from where a stiffness is made anew at once
 WORTH = 7.0  # work: guesses to go for which it is: as dear as that, on coarse meshes and on fine ones
-GUESSES, RENEWED = 12, 20  # work: at most, of one stiffness, and of these; a step that needs more is made in halves
+GUESSES, RENEWED = 12, 60  # work: at most, of one stiffness, and of these; a step that needs more is made in halves
 LOWER = 1e-12  # rounding: of the energy
 SHORTEST = 1e-3  # share of Newton's step below which the energy stands still
 CLOSED = 1e-11  # rounding: of the energy of a contact on a linear body, which is a small part of what it is told by
@@ -118,7 +119,7 @@ class Met:
         order = elimination_order(Pattern.of(blocks, inner, body.core.size).definite)
         free = np.concatenate([inner[order], surface])
         reach = np.zeros((*skin.weights.shape, surface.size))
-        facets, points = np.indices(skin.weights.shape)
+        facets, points = np.ogrid[: along.shape[0], : skin.weights.shape[1]]
         reach[facets[..., None], points[..., None], np.searchsorted(surface, along)[:, None]] = skin.trace
         body = CoredBody(body.core, body.response, body.rest, body.pull, body.rim, free)
         pattern = Pattern.of(blocks, free, body.core.size)
@@ -129,12 +130,11 @@ class Met:
         body, core = self.body, self.body.core
         flowed = self.yielding.flowed(core.gradient(displacement), *state)
         loaded = Loaded(core, PointAnswer(flowed.stress, np.zeros((5, 5)), flowed.energy))
-        pulled = body.rest @ displacement[body.rim]
-        forces = loaded.forces
-        forces[body.rim] += pulled
+        pulled = np.zeros(core.size)
+        pulled[body.rim] = body.rest @ displacement[body.rim]
         rise = self.reach @ displacement[body.free[-self.reach.shape[1] :]]
-        energy = loaded.energy + 0.5 * float(displacement[body.rim] @ pulled) + strike.energy(rise)
-        return Displaced(displacement, flowed, forces[body.free], rise, energy)
+        energy = loaded.energy + 0.5 * float(displacement @ pulled) + strike.energy(rise)
+        return Displaced(displacement, flowed, (loaded.forces + pulled)[body.free], rise, energy)
 
     def stiffness(self, here: Displaced) -> Stiffness:
         """The tangent of a body."""
@@ -148,17 +148,15 @@ class Met:
         start: Array,
         strike: Strike,
         state: State,
-        touching: npt.NDArray[np.bool_],
+        touching: Touching,
         stiffness: Stiffness | None = None,
     ) -> Settled:
         """From a displacement (2 N,) and points (n,) that touch to begin with. Raises FlowUnsettled."""
         here, guesses = self.displaced(start, strike, state), 0
         for _ in range(RENEWED):
-            anew = stiffness is None
-            known = self.stiffness(here) if stiffness is None else stiffness
-            if anew or guesses == 0:
-                closing = Closing(self, known, strike, state)
-            here, more, balanced = closing.closed_in(here, touching if guesses == 0 else None, anew)
+            known = stiffness or self.stiffness(here)
+            closing = Closing(self, known, strike, state, anew=stiffness is None)
+            here, more, balanced = closing.closed_in(here, touching if guesses == 0 else None)
             guesses += more
             if balanced:
                 return Settled(here, guesses, known)
@@ -168,25 +166,26 @@ class Met:
 
 @dataclass(frozen=True, eq=False)
 class Closing:
-    """Guesses of what a body of one stiffness holds beside it, under a striker."""
+    """Guesses of what a body holds beside one ``stiffness``, under a striker; ``anew``: that is the tangent where they
+    begin.
+    """
 
     met: Met
     stiffness: Stiffness
     strike: Strike
     state: State
+    anew: bool
 
-    def closed_in(
-        self, here: Displaced, touching: npt.NDArray[np.bool_] | None, anew: bool
-    ) -> tuple[Displaced, int, bool]:
+    def closed_in(self, here: Displaced, touching: Touching | None) -> tuple[Displaced, int, bool]:
         """Where guesses from ``here`` led, how many they were, and whether it is in balance there; if not, it is the
-        one of least energy. ``anew``: whether the stiffness is the tangent here.
+        one of least energy.
         """
         free, matrix = self.met.body.free, self.stiffness.matrix
         guess, mixing = matrix @ here.displacement[free] - here.forces, Mixing()
         best, missed = here, list[float]()
         for number in range(1, GUESSES + 1):
             there = self._under(guess, here, touching if number == 1 else None)
-            if anew and number == 1 and not there.energy <= here.energy + LOWER * abs(here.energy):
+            if self.anew and number == 1 and not there.energy <= here.energy + LOWER * abs(here.energy):
                 return self._shorter(here, there), number, False
             pressing = self.met.reach.T @ self.strike.pressed(there.rise)
             missing = matrix @ there.displacement[free] - there.forces - guess
@@ -201,7 +200,7 @@ class Closing:
             guess = mixing.next(guess, missing)
         return best, number, False
 
-    def _under(self, guess: Array, here: Displaced, touching: npt.NDArray[np.bool_] | None) -> Displaced:
+    def _under(self, guess: Array, here: Displaced, touching: Touching | None) -> Displaced:
         """A linear body that holds a guess (free,), and the striker; it closes from ``here``."""
         body, solve = self.met.body, self.stiffness.eliminated.solve
         surface = self.met.reach.shape[1]
@@ -213,14 +212,14 @@ class Closing:
         displacement[body.free] = solve(load)
         return self.met.displaced(displacement, self.strike, self.state)
 
-    def _closed(self, alone: Array, begin: Array, touching: npt.NDArray[np.bool_] | None) -> Array:
+    def _closed(self, alone: Array, begin: Array, touching: Touching | None) -> Array:
         """The surface (m,) that is ``alone`` (m,) without the striker, under it: Newton's steps, by falling energy.
 
         They begin with points (n,) that touch, or without these from a surface (m,).
         """
         schur, reach, strike = self.stiffness.eliminated.schur, self.met.reach, self.strike
 
-        def springs(touching: npt.NDArray[np.bool_]) -> tuple[Array, Array]:
+        def springs(touching: Touching) -> tuple[Array, Array]:
             """Those of points that touch: their overlaps' derivative (k, m), and that times their stiffness."""
             touched = reach[touching]
             return touched, strike.springs[touching, None] * touched
@@ -231,15 +230,18 @@ class Closing:
 
         surface = begin
         if touching is not None:
+            touching = touching & np.isfinite(strike.overlap)
             touched, stiff = springs(touching)
-            surface = np.linalg.solve(schur + touched.T @ stiff, schur @ alone - stiff.T @ strike.overlap[touching])
+            load = schur @ alone - stiff.T @ strike.overlap[touching]
+            surface = np.asarray(np.linalg.solve(schur + touched.T @ stiff, load), dtype=float)
         here = energy(surface)
         for _ in range(MOST_CLOSINGS):
             rise = reach @ surface
             within = strike.within(rise) > 0.0
             slope = schur @ (surface - alone) + reach.T @ strike.pressed(rise)
             touched, stiff = springs(within)
-            step, share = -np.linalg.solve(schur + touched.T @ stiff, slope), 1.0
+            step = -np.asarray(np.linalg.solve(schur + touched.T @ stiff, slope), dtype=float)
+            share = 1.0
             there = energy(surface + step)
             while there > here + ENOUGH * share * float(slope @ step) + CLOSED * abs(here) and share > SHORTEST:
                 share *= 0.5
