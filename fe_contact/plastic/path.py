@@ -173,18 +173,19 @@ class Presser:
     def _stepped(self, before: Station, here: Station, depth: float) -> Station:
         """Two stages. Raises FlowUnsettled."""
         stage, spread = here.depth + GAMMA * (depth - here.depth), self._spread_of(before, here)
-        middle = self._stage(here.state, (before.middle or before, here.middle or here), here, stage, spread)
+        like = before.middle or before, here.middle or here
+        middle, began = self._stage(here.state, like, here, stage, spread)
         on = (1.0 - GAMMA) / GAMMA
-        began = self.ground.carried(here.state, middle.scale / here.scale)
         state = tuple(start + on * (flowed - start) for start, flowed in zip(began, middle.state, strict=True))
-        there = self._stage(state, (before, here), middle, depth, spread)
+        there, _ = self._stage(state, (before, here), middle, depth, spread)
         return self._worked(here, there._replace(middle=middle))
 
     def _worked(self, here: Station, there: Station) -> Station:
         """``there`` with the work of the step from ``here``: a mesh that has grown tells no more what was done when it
         was small.
         """
-        ground, began = self.ground, self.ground.carried(here.state, there.scale / here.scale)
+        ground, (strain, amount) = self.ground, here.state
+        began = ground.carried((strain[:0], amount), there.scale / here.scale)  # work: no strain is asked for
         more = there.scale**3 * (ground.worked(there.state) - ground.worked(began))
         return there._replace(worked=here.worked + more)
 
@@ -196,9 +197,11 @@ class Presser:
 
     def _stage(
         self, state: State, like: tuple[Station, Station], here: Station, depth: float, spread: float
-    ) -> Station:
-        """From ``here`` to a depth after ``state``; guessed, in units of the mesh: it goes on as from one to the other
-        end of two stages ``like`` it, those of the steps before; the contact radius as a power of the depth.
+    ) -> tuple[Station, State]:
+        """From ``here`` to a depth after ``state``, and that state on the mesh there.
+
+        Guessed, in units of the mesh: it goes on as from one to the other end of two stages ``like`` it, those of the
+        steps before; the contact radius as a power of the depth.
         """
         first, last = like
         on = math.log(depth / last.depth) / math.log(last.depth / first.depth) if last is not first else 0.0
@@ -208,12 +211,13 @@ class Presser:
         for _ in range(FITTED):
             scale = 1.0 if ground.rim else max(radius, here.scale)  # what has flowed in is not told again
             growth = scale / here.scale
-            found = self.settled(ground.carried(state, growth), depth, start, pressure, scale, scale)
+            began = ground.carried(state, growth)
+            found = self.settled(began, depth, start, pressure, scale, scale)
             radius = found.radius
             if abs(radius / scale - 1.0) < MISFIT or growth == 1.0:
                 break
             start, pressure = found.displacement, found.pressure
-        return found
+        return found, began
 
     def first(self, depth: float, radius: float) -> Station:
         """From rest to a first depth at once, with a contact radius to expect. Raises PlasticFlowLost."""

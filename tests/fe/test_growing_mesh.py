@@ -131,11 +131,12 @@ class Staying(Presser):
 
     def _stage(
         self, state: State, like: tuple[Station, Station], here: Station, depth: float, spread: float
-    ) -> Station:
+    ) -> tuple[Station, State]:
         first, last = like
         share = (depth - here.depth) / (last.depth - first.depth) if last is not first else 0.0
         start = here.displacement + share * (last.displacement - first.displacement)
-        return self.settled(state, depth, start, here.pressure, here.radius * (depth / here.depth) ** spread, 1.0)
+        radius = here.radius * (depth / here.depth) ** spread
+        return self.settled(state, depth, start, here.pressure, radius, 1.0), state
 
     def first(self, depth: float, radius: float) -> Station:
         met = self.ground.met

@@ -714,13 +714,13 @@ class Known(Presser):
         self, state: Any, depth: float, displacement: Array, pressure: Array, radius: float, scale: float
     ) -> Station:
         body: Any = self.ground
-        top = max(float(state[0][0]), depth)
+        top = max(float(state[1][0]), depth)
         left = 1.0 - (top - depth) / (SHARE * top)
         force = body.stiffness * top**body.power * max(left, 0.0) ** body.power
         reached = 1.0 if body.rim else math.sqrt(body.radius * top * max(left, 0.0))
         self.counts += (1, 1)
         moved = np.full(2, -depth / scale)
-        return Station(depth, moved, (np.array([top]), np.array([scale])), force, pressure, reached, scale)
+        return Station(depth, moved, (np.zeros(1), np.array([top, scale])), force, pressure, reached, scale)
 
 
 SHARE = 0.6
@@ -741,13 +741,13 @@ def known(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., None]]:
             spent = (1.0 - SHARE) * stiffness / (power + 1.0)
             return SimpleNamespace(
                 met=met,
-                rest=(np.zeros(1), np.ones(1)),
-                carried=lambda state, growth: (state[0], state[1] * growth),
+                rest=(np.zeros(1), np.array([0.0, 1.0])),
+                carried=lambda state, growth: (state[0], state[1] * [1.0, growth]),
                 points=np.array([0.3, 0.9]),
                 rim=course.rim,
                 unknowns=2,
                 stored=lambda displacement, state: 0.0,
-                worked=lambda state: spent * float(state[0][0]) ** (power + 1.0) / float(state[1][0]) ** 3,
+                worked=lambda state: spent * float(state[1][0]) ** (power + 1.0) / float(state[1][1]) ** 3,
                 power=power,
                 stiffness=stiffness,
                 radius=radius,
