@@ -44,7 +44,8 @@ STRIDE = 6.0  # over the settings' steps: of a step in depth, over the depth
 SHALLOWEST = 1e-6  # depth of the first step over the largest, at least: that shallow, yielding is forgotten soon
 FORGOTTEN = 0.3  # of the shallowest depth, the first step of what flows from the touch on: the next ones forget it
 BISECTIONS = 60  # work
-ELEMENTS = 8.5  # along the contact radius, at 1e-3: half of them tell what steps change, on fewer it is noise
+ELEMENTS = 8.0  # along the contact radius, at 1e-3
+COARSER, RIM_COARSER = 0.4, 0.5  # of the elements, on the coarsest of three meshes: half of them differ by noise
 RIM_ELEMENTS = 2.0  # the same under a rim, which the mesh is refined to, where a body begins to yield
 LEAST_STEPS = 16  # to begin with
 LEAST_ELEMENTS, LEAST_RIM_ELEMENTS = 4.0, 2.0  # that a user may choose
@@ -264,8 +265,8 @@ class Course:
 
     def coarsest(self, numerics: Numerics) -> float:
         """Elements along the contact radius of the coarsest of three meshes."""
-        half = 0.5 * numerics.elements_per_contact
-        return half if self.rim else max(half, COARSEST)
+        elements = numerics.elements_per_contact
+        return RIM_COARSER * elements if self.rim else max(COARSER * elements, COARSEST)
 
     def settling(self, numerics: Numerics) -> float:
         """By how much errors are trusted to fall from one of these meshes to the next."""
