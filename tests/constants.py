@@ -106,7 +106,7 @@ TABLE = (
     Constant("fe_contact.waves.certify", "LEAST_NODES", MEASURED, "along the contact radius; fewer are doubled"),
     Constant("fe_contact.waves.certify", "TRUSTED", DERIVED, "two of the five orders between rows"),
     Constant("fe_contact.dynamics.flow", "SETTLED", MEASURED, "out of balance in flow; a force moves by a third of it"),
-    Constant("fe_contact.plastic.settling", "SETTLED", MEASURED, "the same without inertia; with 1e-7 it moves by 3e-6"),
+    Constant("fe_contact.plastic.settling", "SETTLED", MEASURED, "without inertia; with 1e-7 a force moves by 3e-6"),
     Constant(
         "fe_contact.studies.finite_length", "CORNER", DERIVED, "stress where a free end meets a base: no order more"
     ),

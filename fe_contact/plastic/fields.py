@@ -79,7 +79,7 @@ class PressedAgain:
         """At the largest force, which is at a ``time``, s; and the amount of plastic strain at the points (n,)."""
         ground, peak, unit = self.ground, self.peak, self.course.unit * self.peak.scale
         basis, nodes = ground.basis, self._nodes
-        gradient = ground.met.body.core.gradient(peak.displacement)
+        gradient = ground.body.cored.core.gradient(peak.displacement)
         stress = ground.yielding.flowed(gradient, *peak.state).stress[STRESS]
         *stresses, amount = at_nodes(basis, ground.elements, np.concatenate([stress, peak.state[1][None]]))
         triangles = subdivided(basis).reshape(basis.nelems, -1, 3)[ground.elements].reshape(-1, 3)

@@ -21,7 +21,7 @@ from fe_contact.assembly.surface import flat
 from fe_contact.bodies.pressing import held
 from fe_contact.errors import BodyTooFine
 from fe_contact.plastic.growing import Growing
-from fe_contact.plastic.settling import Met, Strike
+from fe_contact.plastic.settling import Springs, YieldingBody
 from fe_contact.solids.base import State
 from fe_contact.solids.bulk import Bulk, CoredBody
 from fe_contact.solids.contact import Skin
@@ -61,7 +61,7 @@ class Ground:
     the mesh grows, None under a rim.
     """
 
-    met: Met
+    body: YieldingBody
     profile: Shape
     unit: float
     yielding: Yielding
@@ -76,12 +76,12 @@ class Ground:
         """Whether all contacts end at radius 1."""
         return self.growing is None
 
-    def strike(self, scale: float, depth: float, stiffness: float, given: Array) -> Strike:
+    def springs(self, scale: float, depth: float, stiffness: float, given: Array) -> Springs:
         """At a ``depth``, in units of a mesh ``scale`` long; a penalty's ``stiffness`` that only mends the pressure
         ``given`` (q,).
         """
         rise = self.profile.height(scale * self.unit * self.points) / (scale * self.unit)
-        return Strike(depth - rise + given / stiffness, stiffness * self.met.skin.weights.ravel())
+        return Springs(depth - rise + given / stiffness, stiffness * self.body.skin.weights.ravel())
 
     def carried(self, state: State, growth: float) -> State:
         """What the points remember of a mesh that has become ``growth`` times as large."""
@@ -90,17 +90,17 @@ class Ground:
     @property
     def rest(self) -> State:
         """What the points remember that nothing has pressed."""
-        return at_rest(self.met.body.core.weight.shape)
+        return at_rest(self.body.cored.core.weight.shape)
 
     @cached_property
     def points(self) -> Array:
         """Radii of the quadrature points of the surface, ascending (q,)."""
-        return np.asarray(self.met.skin.place[0].ravel())
+        return np.asarray(self.body.skin.place[0].ravel())
 
     @property
     def unknowns(self) -> int:
         """Of every Newton step."""
-        return self.met.body.free.size
+        return self.body.cored.free.size
 
     def contained(self, state: State) -> bool:
         """Whether nothing has yielded near the end of the core."""
@@ -108,14 +108,14 @@ class Ground:
 
     def stored(self, displacement: Array, state: State) -> float:
         """Elastic energy of a displacement (2 N,) in units of E* and length."""
-        body = self.met.body
+        body = self.body.cored
         points = self.yielding.stored(body.core.gradient(displacement), state[0])
         rim = displacement[body.rim]
         return float(np.vdot(body.core.weight, points) + 0.5 * rim @ body.rest @ rim)
 
     def worked(self, state: State) -> float:
         """Plastic work in these units."""
-        return float(np.vdot(self.met.body.core.weight, self.yielding.worked(state[1])))
+        return float(np.vdot(self.body.cored.core.weight, self.yielding.worked(state[1])))
 
 
 @cached
@@ -125,7 +125,7 @@ def ground_of(profile: Shape, unit: float, yielding: Yielding, poisson: float, s
     rest = at_rest(meshed.core.weight.shape)
     body = CoredBody.of(meshed.core, Plastic(yielding), meshed.stiffness, meshed.fixed, rest)
     return Ground(
-        met=Met.of(body, meshed.skin, yielding),
+        body=YieldingBody.of(body, meshed.skin, yielding),
         profile=profile,
         unit=unit,
         yielding=yielding,

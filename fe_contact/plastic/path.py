@@ -111,13 +111,13 @@ class Presser:
         The penalty only mends the pressure given: where that is far off, it is given again. Raises FlowUnsettled.
         """
         ground, stiffness = self.ground, self.penalty * scale / radius
-        areas, touching = ground.met.skin.weights.ravel(), ground.points < radius / scale
+        areas, touching = ground.body.skin.weights.ravel(), ground.points < radius / scale
         for number in range(GIVEN):
             last = number == GIVEN - 1
-            strike = ground.strike(scale, depth / scale, stiffness, pressure)
-            found = ground.met.settled(displacement, strike, state, touching, self.known)
+            springs = ground.springs(scale, depth / scale, stiffness, pressure)
+            found = ground.body.settled(displacement, springs, state, touching, self.known)
             self._count(found.guesses, depth)
-            within, forces = strike.within(found.at.rise), strike.pressed(found.at.rise)
+            within, forces = springs.within(found.at.rise), springs.pressed(found.at.rise)
             wrong = float(np.abs(forces - areas * pressure).sum()) > GUESSED * float(forces.sum())
             displacement, pressure, touching = found.at.displacement, forces / areas, within > 0.0
             self.known = found.stiffness
@@ -221,8 +221,8 @@ class Presser:
 
     def first(self, depth: float, radius: float) -> Station:
         """From rest to a first depth at once, with a contact radius to expect. Raises PlasticFlowLost."""
-        ground, met = self.ground, self.ground.met
-        displacement, pressure = np.zeros(met.body.core.size), np.zeros(met.skin.weights.size)
+        ground, body = self.ground, self.ground.body
+        displacement, pressure = np.zeros(body.cored.core.size), np.zeros(body.skin.weights.size)
         for _ in range(FITTED):
             scale = radius
             found = self._projected(ground.rest, depth, displacement, pressure, radius, scale)

@@ -17,18 +17,16 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from fe_contact.assembly.forms import Array, Matrix
 from fe_contact.assembly.interior import Eliminated, elimination_order
 from fe_contact.dynamics.flow import Mixing
 from fe_contact.solids.base import PointAnswer, State
 from fe_contact.solids.bulk import CoredBody, Loaded, Pattern
-from fe_contact.solids.contact import Skin
+from fe_contact.solids.contact import Points, Skin
 from lumped.errors import NotReached
 from lumped.materials.plasticity import PlasticStep, Yielding
 
-Touching = npt.NDArray[np.bool_]
 SETTLED = 1e-5  # measured: out of balance, of the forces that press; with 1e-7 the largest force changes by 3e-6
 FAR = 0.3  # work: of the same, from where a stiffness is made anew at once
 WORTH = 7.0  # work: guesses to go for which it is: as dear as that, on coarse meshes and on fine ones
@@ -47,11 +45,13 @@ class FlowUnsettled(NotReached):
         super().__init__("the flow did not settle")
 
 
-class Strike(NamedTuple):
-    """A striker at the points (n,) of a skin: how far it overlaps what is not displaced, and the penalty's springs."""
+class Springs(NamedTuple):
+    """The penalty between a striker and the points (n,) of a skin: how far it overlaps these where nothing is
+    displaced, and the stiffness of every point's spring.
+    """
 
     overlap: Array
-    springs: Array
+    stiffness: Array
 
     def within(self, rise: Array) -> Array:
         """How far points that rose (n,) are inside the striker, (n,); below zero outside."""
@@ -59,7 +59,7 @@ class Strike(NamedTuple):
 
     def pressed(self, rise: Array) -> Array:
         """Forces at these points, (n,)."""
-        return np.asarray(self.springs * np.maximum(self.within(rise), 0.0))
+        return np.asarray(self.stiffness * np.maximum(self.within(rise), 0.0))
 
     def energy(self, rise: Array) -> float:
         """Of the springs."""
@@ -67,7 +67,7 @@ class Strike(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Displaced:
+class Deformation:
     """A body displaced by (2 N,): what has ``flowed``, the ``forces`` (free,) that it answers with, how far the points
     of its skin rose (n,), the ``energy`` of body and springs.
     """
@@ -87,30 +87,30 @@ class Stiffness:
     eliminated: Eliminated
 
 
-class Settled(NamedTuple):
+class FlowEquilibrium(NamedTuple):
     """Equilibrium ``at`` a displacement, found in so many ``guesses``; the ``stiffness`` it was found with."""
 
-    at: Displaced
+    at: Deformation
     guesses: int
     stiffness: Stiffness
 
 
 @dataclass(frozen=True, eq=False)
-class Met:
-    """A ``body`` whose ``skin`` a striker meets along the vertical.
+class YieldingBody:
+    """A body with a core that yields, whose ``skin`` a striker meets along the vertical.
 
     The last m of its free degrees of freedom are those of its surface along that: ``reach`` (n, m) tells by them how
     far the n points of the skin rise. ``pattern`` of the body's matrix.
     """
 
-    body: CoredBody
+    cored: CoredBody
     skin: Skin
     yielding: Yielding
     reach: Array
     pattern: Pattern
 
     @classmethod
-    def of(cls, body: CoredBody, skin: Skin, yielding: Yielding) -> Met:
+    def of(cls, body: CoredBody, skin: Skin, yielding: Yielding) -> YieldingBody:
         """Raises nothing: makes the pattern, its rows in the order of their elimination."""
         along = skin.dofs[:, 1::2]
         surface = np.unique(along)
@@ -125,20 +125,20 @@ class Met:
         pattern = Pattern.of(blocks, free, body.core.size)
         return cls(body, skin, yielding, reach.reshape(-1, surface.size), pattern)
 
-    def displaced(self, displacement: Array, strike: Strike, state: State) -> Displaced:
+    def displaced(self, displacement: Array, springs: Springs, state: State) -> Deformation:
         """By (2 N,), after ``state``."""
-        body, core = self.body, self.body.core
+        body, core = self.cored, self.cored.core
         flowed = self.yielding.flowed(core.gradient(displacement), *state)
         loaded = Loaded(core, PointAnswer(flowed.stress, np.zeros((5, 5)), flowed.energy))
         pulled = np.zeros(core.size)
         pulled[body.rim] = body.rest @ displacement[body.rim]
         rise = self.reach @ displacement[body.free[-self.reach.shape[1] :]]
-        energy = loaded.energy + 0.5 * float(displacement @ pulled) + strike.energy(rise)
-        return Displaced(displacement, flowed, (loaded.forces + pulled)[body.free], rise, energy)
+        energy = loaded.energy + 0.5 * float(displacement @ pulled) + springs.energy(rise)
+        return Deformation(displacement, flowed, (loaded.forces + pulled)[body.free], rise, energy)
 
-    def stiffness(self, here: Displaced) -> Stiffness:
+    def stiffness(self, here: Deformation) -> Stiffness:
         """The tangent of a body."""
-        body, flowed = self.body, here.flowed
+        body, flowed = self.cored, here.flowed
         loaded = Loaded(body.core, PointAnswer(flowed.stress, flowed.tangent, flowed.energy))
         matrix = self.pattern.matrix([loaded.matrices(), body.rest[None]])
         return Stiffness(matrix, Eliminated.of(matrix, self.reach.shape[1]))
@@ -146,48 +146,48 @@ class Met:
     def settled(
         self,
         start: Array,
-        strike: Strike,
+        springs: Springs,
         state: State,
-        touching: Touching,
+        touching: Points,
         stiffness: Stiffness | None = None,
-    ) -> Settled:
+    ) -> FlowEquilibrium:
         """From a displacement (2 N,) and points (n,) that touch to begin with. Raises FlowUnsettled."""
-        here, guesses = self.displaced(start, strike, state), 0
+        here, guesses = self.displaced(start, springs, state), 0
         for _ in range(RENEWED):
             known = stiffness or self.stiffness(here)
-            closing = Closing(self, known, strike, state, anew=stiffness is None)
-            here, more, balanced = closing.closed_in(here, touching if guesses == 0 else None)
+            flow = Guesses(self, known, springs, state, anew=stiffness is None)
+            here, more, balanced = flow.closed_in(here, touching if guesses == 0 else None)
             guesses += more
             if balanced:
-                return Settled(here, guesses, known)
+                return FlowEquilibrium(here, guesses, known)
             stiffness = None
         raise FlowUnsettled
 
 
 @dataclass(frozen=True, eq=False)
-class Closing:
+class Guesses:
     """Guesses of what a body holds beside one ``stiffness``, under a striker; ``anew``: that is the tangent where they
     begin.
     """
 
-    met: Met
+    body: YieldingBody
     stiffness: Stiffness
-    strike: Strike
+    springs: Springs
     state: State
     anew: bool
 
-    def closed_in(self, here: Displaced, touching: Touching | None) -> tuple[Displaced, int, bool]:
+    def closed_in(self, here: Deformation, touching: Points | None) -> tuple[Deformation, int, bool]:
         """Where guesses from ``here`` led, how many they were, and whether it is in balance there; if not, it is the
         one of least energy.
         """
-        free, matrix = self.met.body.free, self.stiffness.matrix
+        free, matrix = self.body.cored.free, self.stiffness.matrix
         guess, mixing = matrix @ here.displacement[free] - here.forces, Mixing()
         best, missed = here, list[float]()
         for number in range(1, GUESSES + 1):
             there = self._under(guess, here, touching if number == 1 else None)
             if self.anew and number == 1 and not there.energy <= here.energy + LOWER * abs(here.energy):
                 return self._shorter(here, there), number, False
-            pressing = self.met.reach.T @ self.strike.pressed(there.rise)
+            pressing = self.body.reach.T @ self.springs.pressed(there.rise)
             missing = matrix @ there.displacement[free] - there.forces - guess
             missed.append(float(np.linalg.norm(missing)) / max(float(np.linalg.norm(pressing)), np.finfo(float).tiny))
             if missed[-1] <= SETTLED:
@@ -200,62 +200,61 @@ class Closing:
             guess = mixing.next(guess, missing)
         return best, number, False
 
-    def _under(self, guess: Array, here: Displaced, touching: Touching | None) -> Displaced:
+    def _under(self, guess: Array, here: Deformation, touching: Points | None) -> Deformation:
         """A linear body that holds a guess (free,), and the striker; it closes from ``here``."""
-        body, solve = self.met.body, self.stiffness.eliminated.solve
-        surface = self.met.reach.shape[1]
-        alone = solve(guess)[-surface:]
-        begin = here.displacement[body.free[-surface:]]
+        free, reach, solve = self.body.cored.free, self.body.reach, self.stiffness.eliminated.solve
+        surface = reach.shape[1]
+        closed = self._closed(solve(guess)[-surface:], here.displacement[free[-surface:]], touching)
         load = guess.copy()
-        load[-surface:] -= self.met.reach.T @ self.strike.pressed(self.met.reach @ self._closed(alone, begin, touching))
+        load[-surface:] -= reach.T @ self.springs.pressed(reach @ closed)
         displacement = np.zeros_like(here.displacement)
-        displacement[body.free] = solve(load)
-        return self.met.displaced(displacement, self.strike, self.state)
+        displacement[free] = solve(load)
+        return self.body.displaced(displacement, self.springs, self.state)
 
-    def _closed(self, alone: Array, begin: Array, touching: Touching | None) -> Array:
+    def _closed(self, alone: Array, begin: Array, touching: Points | None) -> Array:
         """The surface (m,) that is ``alone`` (m,) without the striker, under it: Newton's steps, by falling energy.
 
         They begin with points (n,) that touch, or without these from a surface (m,).
         """
-        schur, reach, strike = self.stiffness.eliminated.schur, self.met.reach, self.strike
+        schur, reach, springs = self.stiffness.eliminated.schur, self.body.reach, self.springs
 
-        def springs(touching: Touching) -> tuple[Array, Array]:
-            """Those of points that touch: their overlaps' derivative (k, m), and that times their stiffness."""
-            touched = reach[touching]
-            return touched, strike.springs[touching, None] * touched
+        def touched(touching: Points) -> tuple[Array, Array]:
+            """How k points rise with the surface, (k, m), and that times their stiffness."""
+            moved = reach[touching]
+            return moved, springs.stiffness[touching, None] * moved
 
         def energy(surface: Array) -> float:
             moved = surface - alone
-            return 0.5 * float(moved @ schur @ moved) + strike.energy(reach @ surface)
+            return 0.5 * float(moved @ schur @ moved) + springs.energy(reach @ surface)
 
         surface = begin
         if touching is not None:
-            touching = touching & np.isfinite(strike.overlap)
-            touched, stiff = springs(touching)
-            load = schur @ alone - stiff.T @ strike.overlap[touching]
-            surface = np.asarray(np.linalg.solve(schur + touched.T @ stiff, load), dtype=float)
+            touching = touching & np.isfinite(springs.overlap)
+            moved, stiff = touched(touching)
+            load = schur @ alone - stiff.T @ springs.overlap[touching]
+            surface = np.asarray(np.linalg.solve(schur + moved.T @ stiff, load), dtype=float)
         here = energy(surface)
         for _ in range(MOST_CLOSINGS):
             rise = reach @ surface
-            within = strike.within(rise) > 0.0
-            slope = schur @ (surface - alone) + reach.T @ strike.pressed(rise)
-            touched, stiff = springs(within)
-            step = -np.asarray(np.linalg.solve(schur + touched.T @ stiff, slope), dtype=float)
+            within = springs.within(rise) > 0.0
+            slope = schur @ (surface - alone) + reach.T @ springs.pressed(rise)
+            moved, stiff = touched(within)
+            step = -np.asarray(np.linalg.solve(schur + moved.T @ stiff, slope), dtype=float)
             share = 1.0
             there = energy(surface + step)
             while there > here + ENOUGH * share * float(slope @ step) + CLOSED * abs(here) and share > SHORTEST:
                 share *= 0.5
                 there = energy(surface + share * step)
             surface, here = surface + share * step, there
-            if share == 1.0 and np.array_equal(strike.within(reach @ surface) > 0.0, within):
+            if share == 1.0 and np.array_equal(springs.within(reach @ surface) > 0.0, within):
                 return surface
         raise FlowUnsettled
 
-    def _shorter(self, here: Displaced, there: Displaced) -> Displaced:
+    def _shorter(self, here: Deformation, there: Deformation) -> Deformation:
         """The first half, quarter ... of the way at which the energy is lower. Raises FlowUnsettled."""
         way, share = there.displacement - here.displacement, 0.5
         while share > SHORTEST:
-            there = self.met.displaced(here.displacement + share * way, self.strike, self.state)
+            there = self.body.displaced(here.displacement + share * way, self.springs, self.state)
             if there.energy <= here.energy + LOWER * abs(here.energy):
                 return there
             share *= 0.5

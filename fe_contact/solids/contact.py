@@ -96,7 +96,9 @@ class OnTop:
 
     def overlap(self, place: Array, displacement: Array, depth: float) -> Overlap:
         """See :class:`Obstacle`."""
-        return _flat_overlap(depth + place[1] + displacement[1])
+        within = depth + place[1] + displacement[1]
+        none = np.zeros_like(within)
+        return Overlap(within, np.stack([none, np.ones_like(within)]), np.zeros((2, 2, *within.shape)))
 
     def along(self, place: Array) -> Array:
         """From the ring's top, left or right."""
@@ -105,29 +107,6 @@ class OnTop:
     def place(self, angle: Array) -> Array:
         """Of points of the section at angles from its top, (2, ...)."""
         return np.stack([self.mean_radius + np.sin(angle), np.cos(angle) - 1.0])
-
-
-@dataclass(frozen=True)
-class OnUndeformed:
-    """The same where the points were: small displacements, along the undeformed normal."""
-
-    profile: Shape
-    unit: float
-
-    def overlap(self, place: Array, displacement: Array, depth: float) -> Overlap:
-        """See :class:`Obstacle`."""
-        rise = self.profile.height(self.unit * np.abs(place[0])) / self.unit
-        return _flat_overlap(depth + place[1] - rise + displacement[1])
-
-    def along(self, place: Array) -> Array:
-        """From the axis."""
-        return np.asarray(place[0])
-
-
-def _flat_overlap(depth: Array) -> Overlap:
-    """The overlap, (facets, points), with a striker whose surface counts as flat where it is met."""
-    none = np.zeros_like(depth)
-    return Overlap(depth, np.stack([none, np.ones_like(depth)]), np.zeros((2, 2, *depth.shape)))
 
 
 def flat_places(coordinate: Array) -> Array:

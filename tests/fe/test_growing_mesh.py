@@ -116,7 +116,7 @@ def test_two_growths_are_their_product_and_none_is_the_same() -> None:
 def test_a_thousand_small_growths_make_nothing_of_their_own() -> None:
     """Neither more nor less than nothing, and as much in all as there is of it so much smaller."""
     body = ground(4.0)
-    place, weight = places(body), body.met.body.core.weight
+    place, weight = places(body), body.body.cored.core.weight
     state = remembered(place)
     largest = float(state[1].max())
     for _ in range(1000):
@@ -139,8 +139,8 @@ class Staying(Presser):
         return self.settled(state, depth, start, here.pressure, radius, 1.0), state
 
     def first(self, depth: float, radius: float) -> Station:
-        met = self.ground.met
-        displacement, pressure = np.zeros(met.body.core.size), np.zeros(met.skin.weights.size)
+        body = self.ground.body
+        displacement, pressure = np.zeros(body.cored.core.size), np.zeros(body.skin.weights.size)
         return self.settled(self.ground.rest, depth, displacement, pressure, radius, 1.0)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from on_undeformed import OnUndeformed
 from scipy.optimize import brentq, minimize_scalar
 from skfem import Basis, ElementTriP2, MeshTri
 
@@ -25,7 +26,7 @@ from fe_contact.settings import Given
 from fe_contact.solids import newton, pressing
 from fe_contact.solids.base import PointAnswer, State, elliptic
 from fe_contact.solids.bulk import Bulk, Pattern, Rolled
-from fe_contact.solids.contact import Obstacle, OnDeformed, OnRound, OnTop, OnUndeformed, Skin, flat_places
+from fe_contact.solids.contact import Obstacle, OnDeformed, OnRound, OnTop, Skin, flat_places
 from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.newton import (
     BeyondRange,

@@ -130,7 +130,7 @@ def test_it_yields_first_under_the_axis() -> None:
     stored = here.scale**3 * ground.stored(here.displacement, here.state)
     assert stored == pytest.approx(0.4 * here.force * here.depth, rel=0.02)
     assert ground.worked(here.state) == 0.0
-    core = ground.met.body.core
+    core = ground.body.cored.core
     stress = ground.yielding.flowed(core.gradient(here.displacement), *here.state).stress
     mean = stress[[0, 3, 4]].mean(axis=0)
     mises = np.sqrt(1.5 * ((stress[[0, 3, 4]] - mean) ** 2).sum(axis=0) + 3.0 * stress[1] ** 2)
@@ -217,9 +217,9 @@ def test_a_weight_goes_deeper_and_leaves_slower_or_is_held() -> None:
     assert found.impulse[-1] == pytest.approx(mass * (velocity + speed) + weight * lasts, rel=1e-5)
     assert found.energy["in"] == pytest.approx(0.5 * mass * velocity**2 + weight * left, rel=1e-6)
     assert found.energy["out"] == pytest.approx(0.5 * mass * speed**2, rel=1e-4)
-    linear = replace(given, logarithm=np.log(1e6 * depth))
+    cored = replace(given, logarithm=np.log(1e6 * depth))
     with pytest.raises(HeldDown):
-        Rebound(linear, mass, 1e-6, 1.5, 1.0, 100.0).march(Work())
+        Rebound(cored, mass, 1e-6, 1.5, 1.0, 100.0).march(Work())
 
 
 @pytest.mark.parametrize("gravity", [0.0, 1e5])
@@ -614,11 +614,11 @@ def test_a_pressure_given_overlaps_by_as_much_as_the_penalty_needs_for_it() -> N
     known = COURSE.ground(settings(COARSEST, COURSE))
     given = np.linspace(0.2, 0.1, known.points.size)
     height = np.asarray(known.profile.height(0.5 * known.unit * known.points)) / (0.5 * known.unit)
-    strike = known.strike(0.5, 0.1, 40.0, given)
-    assert strike.pressed(height - 0.1) == pytest.approx(given * known.met.skin.weights.ravel())
-    assert strike.within(height) == pytest.approx(0.1 + given / 40.0)
-    assert strike.energy(height) == pytest.approx(0.5 * strike.pressed(height) @ strike.within(height))
-    assert strike.pressed(height - 1.0) == pytest.approx(0.0)
+    springs = known.springs(0.5, 0.1, 40.0, given)
+    assert springs.pressed(height - 0.1) == pytest.approx(given * known.body.skin.weights.ravel())
+    assert springs.within(height) == pytest.approx(0.1 + given / 40.0)
+    assert springs.energy(height) == pytest.approx(0.5 * springs.pressed(height) @ springs.within(height))
+    assert springs.pressed(height - 1.0) == pytest.approx(0.0)
 
 
 @pytest.mark.parametrize(("core", "enough"), [(0.5 * ground.WIDEST, False), (ground.WIDEST, True)])
@@ -737,10 +737,10 @@ def known(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., None]]:
             power, radius = 1.0 if course.rim else 1.5, RADIUS / course.unit
             stiffness = (2.0 if course.rim else 4.0 / 3.0 * math.sqrt(radius)) * (1.0 + off(numerics, cut))
             core, weights = SimpleNamespace(size=2), np.zeros((1, 2))
-            met = SimpleNamespace(body=SimpleNamespace(core=core), skin=SimpleNamespace(weights=weights))
+            whole = SimpleNamespace(cored=SimpleNamespace(core=core), skin=SimpleNamespace(weights=weights))
             spent = (1.0 - SHARE) * stiffness / (power + 1.0)
             return SimpleNamespace(
-                met=met,
+                body=whole,
                 rest=(np.zeros(1), np.array([0.0, 1.0])),
                 carried=lambda state, growth: (state[0], state[1] * [1.0, growth]),
                 points=np.array([0.3, 0.9]),

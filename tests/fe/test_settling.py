@@ -6,15 +6,15 @@ import math
 
 import numpy as np
 import pytest
+from on_undeformed import OnUndeformed
 
 from fe_contact.assembly.forms import Array
 from fe_contact.plastic import settling
 from fe_contact.plastic.course import Course, PlasticLoading, settings
 from fe_contact.plastic.ground import Ground
 from fe_contact.plastic.path import PlasticFlowLost, Presser
-from fe_contact.plastic.settling import FAR, SETTLED, FlowUnsettled, Met, Settled, Stiffness, slow
+from fe_contact.plastic.settling import FAR, SETTLED, FlowEquilibrium, FlowUnsettled, Stiffness, YieldingBody, slow
 from fe_contact.solids.base import State
-from fe_contact.solids.contact import OnUndeformed
 from fe_contact.solids.newton import Encounter, Equilibrium, balanced
 from lumped.shapes import Sphere
 from lumped.shapes.base import Shape
@@ -34,17 +34,19 @@ def ground(profile: Shape, **material: float) -> Ground:
     return known.ground(settings({"elements_per_contact": 4.0}, known))
 
 
-def settled(body: Ground, depth: float, state: State, start: Array, stiffness: Stiffness | None = None) -> Settled:
+def settled(
+    body: Ground, depth: float, state: State, start: Array, stiffness: Stiffness | None = None
+) -> FlowEquilibrium:
     """As deep in units of a mesh one unit long."""
     none = np.zeros_like(body.points)
-    return body.met.settled(start, body.strike(1.0, depth, STIFF, none), state, body.points < 0.9, stiffness)
+    return body.body.settled(start, body.springs(1.0, depth, STIFF, none), state, body.points < 0.9, stiffness)
 
 
 def at_once(body: Ground, depth: float, state: State, start: Array) -> Equilibrium:
     """By Newton's method on body and contact together, each step with a tangent of its own."""
-    met = body.met
-    encounter = Encounter.of(met.body, met.skin, OnUndeformed(body.profile, body.unit))
-    touching = (body.points < 0.9).reshape(met.skin.weights.shape)
+    whole = body.body
+    encounter = Encounter.of(whole.cored, whole.skin, OnUndeformed(body.profile, body.unit))
+    touching = (body.points < 0.9).reshape(whole.skin.weights.shape)
     return balanced(encounter, start, depth, STIFF, state, touching, 1e-12)
 
 
@@ -53,13 +55,13 @@ def at_once(body: Ground, depth: float, state: State, start: Array) -> Equilibri
 def test_what_settles_is_in_balance_as_newtons_method_finds_it(profile: Shape, hardening: float) -> None:
     """Twice, the second time from what flowed before; force, displacement and plastic work."""
     body = ground(profile, hardening=hardening)
-    state, start, stiffness = body.rest, np.zeros(body.met.body.core.size), None
+    state, start, stiffness = body.rest, np.zeros(body.body.cored.core.size), None
     deep = 0.5 * float(profile.height(0.9 * body.unit)) / body.unit if profile is not PUNCH else 4e-3
     for depth in (deep, 1.15 * deep):
         found, whole = settled(body, depth, state, start, stiffness), at_once(body, depth, state, start).balance
-        strike = body.strike(1.0, depth, STIFF, np.zeros_like(body.points))
+        springs = body.springs(1.0, depth, STIFF, np.zeros_like(body.points))
         assert found.at.flowed.amount.max() > 1e-4
-        assert strike.pressed(found.at.rise).sum() == pytest.approx(whole.force, rel=1e-5)
+        assert springs.pressed(found.at.rise).sum() == pytest.approx(whole.force, rel=1e-5)
         moved = np.abs(whole.displacement).max()
         assert found.at.displacement == pytest.approx(whole.displacement, abs=1e-5 * moved)
         after = found.at.flowed.strain, found.at.flowed.amount
@@ -75,28 +77,28 @@ def test_what_settles_is_the_same_whatever_it_begins_with(seed: int) -> None:
     rng = np.random.default_rng([20261129, seed])
     body = ground(SPHERE, strength=float(10.0 ** rng.uniform(-3.5, -2.0)), hardening=float(rng.choice([0.0, 0.03])))
     depth = 0.5 * body.unit * float(rng.uniform(0.3, 0.9))
-    start = np.zeros(body.met.body.core.size)
+    start = np.zeros(body.body.cored.core.size)
     plain = settled(body, depth, body.rest, start)
-    strike = body.strike(1.0, depth, STIFF, np.zeros_like(body.points))
-    elastic = body.met.stiffness(body.met.displaced(start, strike, body.rest))
+    springs = body.springs(1.0, depth, STIFF, np.zeros_like(body.points))
+    elastic = body.body.stiffness(body.body.displaced(start, springs, body.rest))
     deeper = settled(body, 1.3 * depth, body.rest, start)
     off = plain.at.displacement * (1.0 + 0.3 * rng.standard_normal(start.size))
-    force = strike.pressed(plain.at.rise).sum()
+    force = springs.pressed(plain.at.rise).sum()
     for begin, stiffness in ((start, elastic), (deeper.at.displacement, deeper.stiffness), (off, None)):
         found = settled(body, depth, body.rest, begin, stiffness)
-        assert strike.pressed(found.at.rise).sum() == pytest.approx(force, rel=3.0 * SETTLED)
+        assert springs.pressed(found.at.rise).sum() == pytest.approx(force, rel=3.0 * SETTLED)
         assert found.at.energy <= plain.at.energy + 1e-8 * abs(plain.at.energy)
 
 
 def test_a_stiffness_serves_several_depths(monkeypatch: pytest.MonkeyPatch) -> None:
     """One for all of them where nothing flows; where a body begins to yield fewer than contact problems."""
-    made, made_anew = list[float](), Met.stiffness
+    made, made_anew = list[float](), YieldingBody.stiffness
 
-    def counted(met: Met, here: settling.Displaced) -> Stiffness:
+    def counted(body: YieldingBody, here: settling.Deformation) -> Stiffness:
         made.append(here.energy)
-        return made_anew(met, here)
+        return made_anew(body, here)
 
-    monkeypatch.setattr(Met, "stiffness", counted)
+    monkeypatch.setattr(YieldingBody, "stiffness", counted)
     for strength, share in ((1.0, 0.0), (1e-2, 0.6)):
         made.clear()
         known = course(SPHERE, strength)
@@ -109,7 +111,7 @@ def test_flow_that_does_not_settle_is_lost_by_name(monkeypatch: pytest.MonkeyPat
     body = ground(SPHERE)
     monkeypatch.setattr(settling, "RENEWED", 1)
     with pytest.raises(FlowUnsettled):
-        settled(body, 0.2 * body.unit, body.rest, np.zeros(body.met.body.core.size))
+        settled(body, 0.2 * body.unit, body.rest, np.zeros(body.body.cored.core.size))
     with pytest.raises(PlasticFlowLost, match=r"plastic flow at depth 0.02 m did not settle; cure: raise"):
         Presser(body, STIFF, 1.0).first(0.02, 0.1)
 
@@ -118,7 +120,7 @@ def test_a_contact_that_does_not_close_is_lost(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(settling, "MOST_CLOSINGS", 1)
     body = ground(SPHERE)
     with pytest.raises(FlowUnsettled):
-        settled(body, 0.02 * body.unit, body.rest, np.zeros(body.met.body.core.size))
+        settled(body, 0.02 * body.unit, body.rest, np.zeros(body.body.cored.core.size))
 
 
 @pytest.mark.parametrize(
