@@ -25,6 +25,7 @@ from lumped.result.history import COLUMNS, History
 from lumped.result.result import UNITS, Quantity
 
 IN_FLIGHT = 65  # rows of a flight
+PLACES = 513  # in a contact, where a force is looked for that comes earlier or later
 OF_EACH = ("duration", "restitution", "peak_force", "peak_depth")  # of every contact
 Shares = Mapping[str, float]  # of an error, by cause
 Judged = tuple[Curve, Mapping[str, Causes]]  # a contact, and what the settings change of it
@@ -117,17 +118,17 @@ class Row(Solution):
 
     def history(self) -> History:
         """Rows of all contacts and of the flights between them, by the clock of the first touch."""
-        tables = list[Array]()
-        for number, budget in enumerate(self.budgets):
+        tables, pressed = list[Array](), [budget.history() for budget in self.budgets]
+        for number, (budget, rows) in enumerate(zip(self.budgets, pressed, strict=True)):
             if number:
                 tables.append(_flight(self.budgets[number - 1].curve, budget.curve.strike.touched_at))
-            pressed = budget.history()
-            table = np.array([getattr(pressed, name) for name in COLUMNS])
+            table = np.array([getattr(rows, name) for name in COLUMNS])
             table[0] += budget.curve.strike.touched_at
             tables.append(table)
         columns = dict(zip(COLUMNS, np.hstack(tables), strict=True))
-        for number, budget in enumerate(self.budgets):
-            columns["force_error"] += _late(budget.curve, columns["time"], self.late(number))
+        for number, (budget, rows) in enumerate(zip(self.budgets, pressed, strict=True)):
+            since = columns["time"] - budget.curve.strike.touched_at
+            columns["force_error"] += _late(budget.curve, rows, since, self.late(number))
         return History(**columns)
 
     @cached_property
@@ -213,11 +214,25 @@ def _flight(curve: Curve, touch: float) -> Array:
     return np.array([parted + flown, depth, velocity, *np.zeros((3, flown.size))])
 
 
-def _late(curve: Curve, time: Array, late: float) -> Array:
-    """What the force at times, s, changes where a contact comes as much earlier or later, N."""
-    since, shift = time - curve.strike.touched_at, min(late, curve.duration)
-    force = curve.force(since)
-    return np.maximum(np.abs(curve.force(since + shift) - force), np.abs(curve.force(since - shift) - force))
+def _late(curve: Curve, rows: History, since: Array, late: float) -> Array:
+    """How much wider, N, the band of a contact's force is at times since its touch, s, for what comes up to as much
+    earlier or later; ``rows``: those of the contact, with the band they have by themselves.
+
+    Where a touch is known no better than a contact lasts, both ends of what is possible lie outside of it, and the
+    force between them.
+    """
+    outside, force = 2.0 * curve.duration, curve.force(since)
+    early, after = (np.clip(since + shift, -outside, outside) for shift in (-late, late))
+    apart = np.maximum(np.abs(curve.force(early) - force), np.abs(curve.force(after) - force))
+    places = np.linspace(0.0, curve.duration, PLACES)
+    first, behind = np.searchsorted(places, early), np.searchsorted(places, after)
+    spans = np.stack([first, behind], axis=1).ravel()
+    own = np.interp([*places, outside], rows.time, rows.force_error, right=0.0)
+    pressed = np.append(curve.force(places), 0.0)  # one more, for what begins behind the last
+    highest = np.maximum.reduceat(pressed + own, spans)[::2] - force
+    least = force - np.minimum.reduceat(pressed - own, spans)[::2]
+    known = np.interp(since, rows.time, rows.force_error, left=0.0, right=0.0)
+    return np.where(first < behind, np.maximum.reduce([apart, highest - known, least - known]), apart)
 
 
 def _moved(budget: Budget, of: Callable[[Strike], float]) -> Shares:

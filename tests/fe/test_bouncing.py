@@ -25,8 +25,10 @@ from fe_contact.march.impacts import FAINTEST, Grounded, Landing, Released, _fal
 from fe_contact.steppers.scaled_surface import MEMORY_POINTS, POINTS_A_STEP
 from fe_contact.steppers.steps import Strike
 from fe_contact.targets.base import struck
+from lumped import laws
 from lumped.laws import mdr
 from lumped.materials import Relaxation
+from lumped.scene.scene import Motion
 
 Scenes = Callable[..., lumped.Scene]
 ELASTIC = {"law": "elastic", "E": 1e6}
@@ -374,3 +376,34 @@ def test_a_round_striker_lands_where_nothing_lies_below_it() -> None:
     stepper = struck(scene.geometry, numerics).stepper(Strike.of(scene), numerics, ())
     gaps = stepper.clearance(stepper.remembered(stepper.touch().memory), 0.0)
     assert np.flatnonzero(gaps == 0.0) == [stepper.standing()]
+
+
+@pytest.mark.parametrize("flights", [20.0, 1e5, 1e6])
+def test_a_touch_known_no_better_than_a_contact_lasts_leaves_the_later_force_in_its_band(flights: float) -> None:
+    """A block that has forgotten the first contact is struck anew, by what left it: two exact impacts, a flight apart.
+
+    Of a long flight the restitution's bar moves the touch by more than the contact lasts.
+    """
+    scene = lumped.Scene.load("polymer-prism")
+    first = laws.correspondence.of(scene).simulate(scene, 1e-9)
+    lasted = first.quantities["duration"].value
+    assert lasted is not None
+    scene = replace(scene, model=replace(scene.model, gravity=2.0 * scene.velocity / (flights * lasted)))
+    scene = replace(scene, motion=Motion(impacts=2))
+    first = one_impact(scene, scene.velocity)
+    last = first.time[-1], first.depth[-1], first.velocity[-1]
+    velocity = float(np.sqrt(last[2] ** 2 - 2.0 * scene.gravity * last[1]))
+    touch = float(last[0] + (velocity - last[2]) / scene.gravity)
+    second = one_impact(scene, velocity)
+    found = fe_contact.run(scene, tolerance=0.1)
+    history, start = found.history, found.contacts[1]["start_error"]
+    assert (start > lasted) == (flights > 1e3), "only a long flight leaves the touch so uncertain"
+    exact = first.force_at(history.time) + np.interp(history.time - touch, second.time, second.force, 0.0, 0.0)
+    missed = np.abs(history.force - exact)
+    assert (missed <= history.force_error + 1e-6 * history.force.max()).all()
+
+
+def one_impact(scene: lumped.Scene, velocity: float) -> lumped.History:
+    """Of a block at rest, exact."""
+    alone = replace(scene, velocity=velocity, motion=Motion())
+    return laws.correspondence.of(alone).simulate(alone, 1e-9).history
