@@ -149,8 +149,9 @@ def _judged(runs: Runs, read: Read, number: int, numerics: Numerics, alone: bool
     penalty, stiffer = other_setting(pressed, "penalty")
     swings = not steps.value.separated and steps.value.strike.gravity > 0.0  # between few steps, if it does so for long
     by_steps = swings or steps.jitter_falls
+    rounded = (Softening(steps.value, ROUNDING),) if isinstance(surface, FlatEnd) else ()
     changes: dict[str, Causes] = {
-        "mesh": (by_mesh, *(() if by_steps else steps.jitter)),
+        "mesh": (by_mesh, *rounded, *(() if by_steps else steps.jitter)),
         "penalty": (Variation.between(curve(pressed), curve(penalty), factor(LEAST_ORDER["penalty"], stiffer)),),
         "time_step": (*steps.changes, *(steps.jitter if by_steps else ())),
         "far_field": _far_field(runs, curve, steps.value, cheap, mesh, alone),

@@ -242,7 +242,9 @@ def _moved(budget: Budget, of: Callable[[Strike], float]) -> Shares:
 
 def _error(change: Variation | Softening | None, of: Callable[[Strike], float]) -> float:
     """Of one change, several contacts with each setting; infinite where the variation failed."""
-    if not isinstance(change, Variation):
+    if change is None:
         return np.inf
+    if isinstance(change, Softening):
+        return change.share * abs(of(change.curve.strike))
     trust = change.factor * max(change.weights.values(), default=1.0)
     return float(trust * abs(of(change.first.strike) - of(change.second.strike)))

@@ -190,6 +190,25 @@ def test_the_last_row_of_what_does_not_part_is_at_the_end_time(end_time: float) 
     assert fe_contact.run(Scene.from_dict(table), 1e-3).history.time[-1] == pytest.approx(end_time, rel=1e-12)
 
 
+@pytest.mark.parametrize("impacts", [1, 3])
+def test_a_block_that_flows_is_as_deep_as_the_rounding_of_its_stiffness_lets_it_be_known(impacts: int) -> None:
+    """Depth z of the spring and the integral of z/tau of the dashpot, z'' + z'/tau + w^2 z = g: the steps err by less
+    than a solve rounds, however many contacts are asked for.
+    """
+    young, tau, area, height, mass, velocity, gravity, end = 1e6, 1.3e-3, 2e-4, 0.02, 0.5, 1e-3, 1e-3, 1.1
+    material = {"law": "maxwell", "E": young, "eta": young * tau, "nu": -0.25}
+    striker = {"shape": "prism", "area": area, "height": height, "mass": mass, "velocity": velocity}
+    tables = {"model": {"gravity": gravity}, "motion": {"impacts": impacts, "end_time": end}}
+    scene = Scene.from_dict({"striker": striker | {"material": material}, "target": {"shape": "plane"}} | tables)
+    square = young * area / height / mass
+    settled = gravity / square  # the spring, e^(-square tau end) from it
+    assert math.exp(-square * tau * end) < 1e-12
+    known = settled + (gravity * end + velocity - settled / tau) / (square * tau)
+    depth = fe_contact.run(scene, 1e-4).quantities["peak_depth"]
+    assert depth.value is not None
+    assert abs(depth.value - known) <= (depth.error or 0.0) + 1e-13 * known
+
+
 @pytest.mark.parametrize("periods", [0.5, 6.0])
 def test_a_punch_whose_dashpot_answers_most_at_the_touch_settles_on_its_weight(periods: float) -> None:
     """Mass, spring and dashpot in closed form: damped beyond oscillation, the force falls from the touch on."""
