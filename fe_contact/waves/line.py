@@ -137,6 +137,7 @@ class Line(Solution):
             least = _nearby(fine, other.reading) if self._alone else _ended_later(self.fine, other)
             if self.scene.profile.fixed_radius is not None:  # it jumps, and may stay at its peak
                 least["peak_time"] = _as_high(fine, other.reading, self.safety)
+                least["duration"] = max(least.get("duration", 0.0), fine.lingers if self._alone else 0.0)
             else:
                 least["duration"] = _lost_in_rounding(fine)
             if cause == "time_step":

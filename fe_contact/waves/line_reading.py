@@ -64,13 +64,14 @@ def _reached(forces: Array, away: int) -> float:
 @dataclass(frozen=True, eq=False)
 class RodReading:
     """``rows`` (5, n): time, s, never decreasing; depth, m; velocity, m/s, of a ``mass``, kg; force, N; dent, m. Did
-    contact end?
+    contact end? How long after its end, s, may what a front left of the force have pressed on?
     """
 
     rows: Array
     mass: float
     separated: bool
     quantities: Mapping[str, float | None]
+    lingers: float = 0.0
 
     def force_at(self, time: Array) -> Array:
         """N, linear between the rows."""
@@ -192,10 +193,11 @@ def read_bar(
         rows = _cleaned(rows, spans, echo)
     elif steps:
         rows = with_fronts(rows, np.arange(steps, rows.shape[1] - 2, steps), spoiled=0)
-    separated = len(spans) == scene.motion.impacts and rows[FORCE, -1] <= 0.0
+    separated, lingers = len(spans) == scene.motion.impacts and rows[FORCE, -1] <= 0.0, 0.0
     if separated:
-        rows, end = _bar_ended(rows, spans[-1][1])
-        spans[-1] = (spans[-1][0], end)
+        opened = spans[-1][1]
+        rows, end = _bar_ended(rows, opened)
+        spans[-1], lingers = (spans[-1][0], end), max(opened - end, 0.0)
     else:
         rows = stopped(rows, scene.end_time)
     impulses = np.cumsum([sample.impulse for sample in found.samples])
@@ -212,7 +214,7 @@ def read_bar(
         "impulse": float(np.interp(rows[TIME, -1], found.time, impulses)),
         "history_l2": 0.0,
     }
-    return RodReading(rows, total, separated, quantities), contacts
+    return RodReading(rows, total, separated, quantities, lingers), contacts
 
 
 def clustered(contacts: tuple[tuple[float, float], ...], pause: float) -> list[tuple[float, float]]:

@@ -21,6 +21,7 @@ from lumped import Scene
 from lumped.errors import BadInput
 from lumped.result.result import Result
 from lumped.scene.tables import Motion
+from lumped.schema import Table
 from lumped.solvers.bar import Bounces, StraightBar, bounces
 
 BAR = StraightBar(length=10.0, speed=30.0, impedance=30.0)
@@ -194,6 +195,38 @@ def test_of_several_contacts_too_the_first_echo_of_a_mass_is_as_high_as_its_wave
     assert (found.quantities["peak_force"].error or np.inf) < known * exact
     sides = found.history.force_at(ECHO * np.array([1.0 - 1e-9, 1.0 + 1e-9]))
     np.testing.assert_allclose(sides, [30.0 * (10.0 + 10.0 * ECHO), exact], rtol=known, err_msg="before and behind it")
+
+
+@pytest.mark.parametrize(("share", "tolerance"), [(1.2e-3, 0.1), (4e-3, 0.03), (0.02, 0.01)])
+def test_a_mass_that_leaves_the_echo_hardly_any_time_trebles_the_force_all_the_same(
+    share: float, tolerance: float
+) -> None:
+    """F = Z v (4 exp(-Z t/m) - 1) behind the echo, down to zero: steps that passed over it told of no such peak."""
+    mass = 10.0 * share
+    result = fe_contact.run(Scene.load("bar-impact", {"striker.mass": mass}), tolerance=tolerance)
+    slowed = mass / 30.0
+    impulse = 300.0 * ECHO + 300.0 * slowed * (3.0 - math.log(4.0))
+    known = {"peak_force": 900.0, "peak_time": ECHO, "duration": ECHO + slowed * math.log(4.0), "impulse": impulse}
+    for name, value in (known | {"restitution": impulse / (10.0 + mass) / 10.0 - 1.0}).items():
+        assert covers(result, name, value), name
+
+
+@pytest.mark.parametrize(
+    ("mass", "numerics", "key"),
+    [(5e-3, {}, r"striker\.mass: 0\.005: .* 0, or from 0\.00937"), (0.1, {"steps": 400}, r"steps: 400 .* from 600")],
+)
+def test_steps_that_pass_over_the_echo_of_a_mass_are_refused(mass: float, numerics: Table, key: str) -> None:
+    with pytest.raises(BadInput, match=key):
+        fe_contact.run(Scene.load("bar-impact", {"striker.mass": mass}), numerics=numerics)
+
+
+@pytest.mark.parametrize("weight", [1.002, 1.0045])
+def test_what_a_front_leaves_of_the_force_may_end_the_contact_within_a_step_after_it(weight: float) -> None:
+    """Behind the echo Z (g T - v) is left, for T - v/g: less than a step, in which the march lets go with the front."""
+    gravity = weight * 10.0 / ECHO
+    scene = Scene.load("bar-impact", {"model.gravity": gravity})
+    result = fe_contact.run(scene, tolerance=0.1)
+    assert covers(result, "duration", 2.0 * ECHO - 10.0 / gravity)
 
 
 def test_memory_costs_a_bar_its_restitution() -> None:

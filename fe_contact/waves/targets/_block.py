@@ -34,6 +34,9 @@ from lumped.shapes._block import Block
 DEFAULT_TOLERANCE = 3e-3  # default: relative, of every certified quantity of a bar: looser than of a rod
 STEPS, MANY, MOST = 200, 1600, 12_800  # while a wave goes to the far end and back: at first, and at all
 LIGHT = 32.0  # of them in the part of the bar that is as heavy as the mass behind it
+# The fewest of them in which that mass is slowed to 1/e, and the most of which so few may be: its echo trebles the
+# force for no longer, and whatever steps pass over it agree that there is none.
+SLOWED, MOST_SLOWED = 3, 6400
 USUAL: Table = {"enforcement": "exact", "scheme": "staged"}
 PAUSE = 0.25  # of that time within which several contacts count as one
 
@@ -51,6 +54,7 @@ def plan(scene: Scene, given: Given) -> Plan:
         contact_time=echo,
         mass=usual_mass(scene),
     ).varied(**given)
+    _check_mass(scene, bar, numerics)
     return Plan(numerics, frozenset(given) - {"tolerance"}, _ledger(scene, bar))
 
 
@@ -71,9 +75,35 @@ def check(scene: Scene) -> None:
 
 def _steps(bar: Bar) -> int:
     """So many at first that the echo of a light mass, which is no longer than its share of the bar's, is resolved."""
-    own = bar.density * bar.area * bar.length
-    echo = LIGHT * own / bar.end_mass if bar.end_mass else 0.0
-    return 4 * math.ceil(min(max(STEPS, echo), MANY) / 4)
+    echo = LIGHT / _share(bar) if bar.end_mass else 0.0
+    return 4 * math.ceil(max(min(max(STEPS, echo), MANY), min(_fewest(bar), MOST_SLOWED)) / 4)
+
+
+def _share(bar: Bar) -> float:
+    """Of the mass behind a bar, over the bar's own: 2 m/Z over the time of an echo."""
+    return bar.end_mass / (bar.density * bar.area * bar.length)
+
+
+def _fewest(bar: Bar) -> float:
+    """Steps in an echo of which enough slow the mass behind the bar."""
+    return 2.0 * SLOWED / _share(bar) if bar.end_mass else 0.0
+
+
+def _check_mass(scene: Scene, bar: Bar, numerics: WaveNumerics) -> None:
+    """Raise BadInput where steps pass over the echo of a mass behind the bar."""
+    fewest = _fewest(bar)
+    if numerics.steps >= fewest:
+        return
+    if fewest <= MOST_SLOWED:
+        reason = (
+            f"{numerics.steps} pass over the echo of striker.mass; accepted: from {math.ceil(fewest)}, or none given"
+        )
+        raise BadInput(Fault(scene.source, "numerics.steps", reason))
+    least = 2.0 * SLOWED / MOST_SLOWED * bar.end_mass / _share(bar)
+    reason = (
+        f"{bar.end_mass:g}: so light behind the block that steps pass over its echo; accepted: 0, or from {least:.3g}"
+    )
+    raise BadInput(Fault(scene.source, "striker.mass", reason))
 
 
 def _elements(numerics: WaveNumerics) -> int:
