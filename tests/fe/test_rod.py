@@ -295,3 +295,17 @@ def test_rods_that_elements_do_not_carry_are_refused(changes: dict[str, Any], ke
             changes = changes | {path: changes[path] | {"nu": 0.3, "density": 1e3}}
     with pytest.raises(BadInput, match=key):
         check(Scene.load("rod", changes), {})
+
+
+@pytest.mark.parametrize("name", ["rod", "rod-free"])
+def test_a_front_s_force_on_a_light_striker_is_in_its_bar_or_refused(
+    name: str, uncovered: Callable[..., dict[str, float]]
+) -> None:
+    """Steps that pass over it agreed on a quarter of the greatest force, which doubles as the echo meets the mass."""
+    light = {"striker.mass": 1.5e-3 * 1.2330971, "motion.end_time": 2.2e-4}
+    scene = Scene.load(name, light)
+    assert not uncovered(simulate(scene, "fe", {"tolerance": 0.1}), exact(scene))
+    with pytest.raises(BadInput, match=r"steps: 1000 .* from \d+, or none"):
+        simulate(scene, "fe", {"steps": 1000})
+    with pytest.raises(BadInput, match=r"striker\.mass: 0\.0001: .* from 0\.00148, or --method rod_waves"):
+        simulate(Scene.load(name, light | {"striker.mass": 1e-4}), "fe", {})

@@ -46,6 +46,10 @@ STEPS = 400  # along the contact time of the scene, at the default tolerance
 FEWEST, MANY, MOST = 48, 2_500, 20_000  # elements: at first, and as far as they are doubled
 MOST_MESHED = 100_000  # at all
 LIGHT = 16.0  # of them in the part of the rod that is as heavy as the striker
+# The fewest of them that a wave crosses while a flat striker is slowed to 1/e, and the most of which so few may be: a
+# front's force lasts no longer, and whatever steps pass over it agree that it is less.
+SLOWED, MOST_SLOWED = 6, 5_000
+WHOLE = 0.95  # of them at least, as a plan takes a whole number
 FRONT = 40.0  # of them which a wave crosses while the dent's force grows to that of a front
 RELAXED = 6.0  # of them which it crosses in the shortest relaxation time
 COARSEST = 8  # of them that a user's own steps may leave
@@ -91,7 +95,12 @@ def _fewest(scene: Scene, dent: HertzImpact | None) -> float:
         grown = share ** (1.0 / scene.profile.exponent_of_force) * dent.depth / scene.velocity
         needs.append(FRONT * crossing / grown)  # by this or by LIGHT a wave crosses 64 in the time of a dent, or more
     needs += [RELAXED * crossing / min(times)] if times else []
-    return min(max(needs), MANY)
+    return max(min(max(needs), MANY), min(_slowing(scene), MOST_SLOWED))
+
+
+def _slowing(scene: Scene) -> float:
+    """Elements with which enough steps slow a flat striker; a dent makes forces grow and fade by itself."""
+    return SLOWED * rod_mass(scene) / scene.reduced_mass if scene.profile.fixed_radius is not None else 0.0
 
 
 def cost(scene: Scene, numerics: WaveNumerics) -> Cost:
@@ -114,7 +123,9 @@ def _usual(scene: Scene) -> Table:
 
 
 def _check_steps(scene: Scene, numerics: WaveNumerics) -> None:
-    """Raise BadInput for steps so long that half of them say nothing, RodTooLong for a rod of too many elements."""
+    """Raise BadInput for steps so long that half of them say nothing, or that they pass over the force of a front,
+    RodTooLong for a rod of too many elements.
+    """
     count = elements(scene, numerics)
     if count < COARSEST:
         reason = f"{numerics.steps} in {numerics.contact_time:.3g} s: a wave crosses the rod in {count} of them"
@@ -122,6 +133,20 @@ def _check_steps(scene: Scene, numerics: WaveNumerics) -> None:
         raise BadInput(Fault(scene.source, "numerics.steps", f"{reason}; accepted: from {fewest}, or none given"))
     if count > MOST_MESHED:
         raise RodTooLong(transit(scene), count, MOST_MESHED)
+    if count < WHOLE * _slowing(scene):
+        raise BadInput(_passed_over(scene, numerics))
+
+
+def _passed_over(scene: Scene, numerics: WaveNumerics) -> Fault:
+    """The fault of steps that pass over the force of a front on a light striker."""
+    if _slowing(scene) <= MOST_SLOWED:
+        fewest = math.ceil(_slowing(scene) * numerics.contact_time / transit(scene))
+        reason = f"{numerics.steps} pass over the force of a front on striker.mass"
+        return Fault(scene.source, "numerics.steps", f"{reason}; accepted: from {fewest}, or none given")
+    least = SLOWED / MOST_SLOWED * rod_mass(scene)
+    other = ", or --method rod_waves" if scene.geometry.material.young.is_elastic else ""
+    reason = f"{scene.mass:g}: so light on the rod that steps pass over the force of a front"
+    return Fault(scene.source, "striker.mass", f"{reason}; accepted: from {least:.3g}{other}")
 
 
 def _varied(scene: Scene, numerics: WaveNumerics) -> dict[str, WaveNumerics]:
