@@ -98,7 +98,8 @@ class Line(Solution):
     def history(self) -> History:
         """The rows, at least as many as a history has, with the force's error band.
 
-        That is the largest change around a time, or half of what doubling the steps before changed there.
+        That is the largest change around a time, or half of what doubling the steps before changed there; beside it,
+        where the force is but a line, what the line missed of the relaxation at touch.
         """
         fine, coarse, coarser = (one.reading for one in (self.fine, self.others["time_step"], self.quarter))
         rows = fine.rows
@@ -109,6 +110,8 @@ class Line(Solution):
         change = np.maximum(_largest(fine, coarse), 0.5 * _largest(coarse, coarser))
         width = int(COMPARED * min(max(AWAY, self.safety * self.moved / rows[TIME, -1]), 1.0))
         error = self.safety * np.interp(rows[TIME], _places(fine), largest_around(change, width))
+        for begin, end in fine.blurred:
+            error[(rows[TIME] >= begin) & (rows[TIME] <= end)] += UNSHOWN * fine.relaxed
         flat, curve = self.scene.profile.fixed_radius, self.scene.profile.load_curve
         radius = np.full(rows.shape[1], flat) if flat is not None else curve.contact_radius(rows[DENT])
         return History(rows[TIME], rows[DEPTH], rows[VELOCITY], rows[FORCE], np.asarray(radius), error)

@@ -64,7 +64,8 @@ def _reached(forces: Array, away: int) -> float:
 @dataclass(frozen=True, eq=False)
 class RodReading:
     """``rows`` (5, n): time, s, never decreasing; depth, m; velocity, m/s, of a ``mass``, kg; force, N; dent, m. Did
-    contact end? How long after its end, s, may what a front left of the force have pressed on?
+    contact end? How long after its end, s, may what a front left of the force have pressed on? ``blurred``: times, s,
+    between which no more is known of the force than a line, ``relaxed``, N, what it missed in the first of them.
     """
 
     rows: Array
@@ -72,6 +73,8 @@ class RodReading:
     separated: bool
     quantities: Mapping[str, float | None]
     lingers: float = 0.0
+    blurred: tuple[tuple[float, float], ...] = ()
+    relaxed: float = 0.0
 
     def force_at(self, time: Array) -> Array:
         """N, linear between the rows."""
@@ -180,17 +183,20 @@ class Ending:
 
 
 def read_bar(
-    found: Motion, total: float, scene: Scene, pause: float, echo: float, steps: int | None
+    found: Motion, total: float, scene: Scene, pause: float, echo: float, steps: int | None, first_force: float
 ) -> tuple[RodReading, Contacts]:
     """Rows up to the last separation and every contact; ``total`` mass, kg; those within a ``pause``, s, are one.
 
-    ``echo``: time, s, after which a front comes back; ``steps`` in it, None where they do not follow it.
+    ``echo``: time, s, after which a front comes back; ``steps`` in it, None where they do not follow it;
+    ``first_force``: at touch, N, where a material has not begun to relax.
     Impulse and history are those of all contacts, the other quantities those of the first.
     """
     rows = np.array([_bar_row(sample) for sample in found.samples]).T
     spans = clustered(found.seen, pause)
+    blurred, relaxed = list[tuple[float, float]](), 0.0
     if scene.motion.impacts > 1:
-        rows = _cleaned(rows, spans, echo)
+        rows, blurred = _cleaned(rows, spans, echo)
+        relaxed, rows[FORCE, 0] = abs(first_force - float(rows[FORCE, 0])), first_force
     elif steps:
         rows = with_fronts(rows, np.arange(steps, rows.shape[1] - 2, steps), spoiled=0)
     separated, lingers = len(spans) == scene.motion.impacts and rows[FORCE, -1] <= 0.0, 0.0
@@ -214,7 +220,7 @@ def read_bar(
         "impulse": float(np.interp(rows[TIME, -1], found.time, impulses)),
         "history_l2": 0.0,
     }
-    return RodReading(rows, total, separated, quantities, lingers), contacts
+    return RodReading(rows, total, separated, quantities, lingers, tuple(blurred), relaxed), contacts
 
 
 def clustered(contacts: tuple[tuple[float, float], ...], pause: float) -> list[tuple[float, float]]:
@@ -253,11 +259,12 @@ def _bar_ended(rows: Array, end: float) -> tuple[Array, float]:
     return np.hstack([pressed, *(row[:, None] for row in ends)]), end
 
 
-def _cleaned(rows: Array, spans: list[tuple[float, float]], echo: float) -> Array:
+def _cleaned(rows: Array, spans: list[tuple[float, float]], echo: float) -> tuple[Array, list[tuple[float, float]]]:
     """Forces without the ringing of the first element at both ends of every contact and at fronts within the first, but
-    a line through what lies beside. There the force jumps: two rows of one time at every end within the rows.
+    a line through what lies beside, and the times between which that is so. There the force jumps: two rows of one time
+    at every end within the rows.
     """
-    time, cleaned, edges = rows[TIME], rows.copy(), list[Array]()
+    time, cleaned, edges, blurred = rows[TIME], rows.copy(), list[Array](), list[tuple[float, float]]()
     for number, span in enumerate(spans):
         ends = [(edge, RINGING) for edge in span] if number else _fronts(time, span, echo)
         for (start, behind), (end, _) in pairwise(ends):
@@ -268,12 +275,13 @@ def _cleaned(rows: Array, spans: list[tuple[float, float]], echo: float) -> Arra
                 telling, spoiled = ordered[ringing : ringing + CLEAR], ordered[:ringing]
                 line = np.polyfit(time[telling] - start, rows[FORCE, telling], 1)
                 cleaned[FORCE, spoiled] = np.maximum(np.polyval(line, time[spoiled] - start), 0.0)
+                blurred.append((min(edge, *time[spoiled]), max(edge, *time[spoiled])))
                 if time[0] < edge < spans[-1][1]:
                     reached = _row(rows, edge, max(float(np.polyval(line, edge - start)), 0.0))
                     apart = [_row(rows, edge, 0.0)] if edge in span else []
                     edges += [reached, *apart] if edge == end else [*apart, reached]
     places = np.searchsorted(time, [row[TIME] for row in edges])
-    return np.insert(cleaned, places, np.array(edges).T, axis=1) if edges else cleaned
+    return (np.insert(cleaned, places, np.array(edges).T, axis=1) if edges else cleaned), blurred
 
 
 def _fronts(time: Array, first: tuple[float, float], echo: float) -> list[tuple[float, int]]:

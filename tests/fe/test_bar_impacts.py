@@ -229,6 +229,26 @@ def test_what_a_front_leaves_of_the_force_may_end_the_contact_within_a_step_afte
     assert covers(result, "duration", 2.0 * ECHO - 10.0 / gravity)
 
 
+def test_of_several_contacts_too_a_force_that_relaxes_within_some_steps_is_in_its_band() -> None:
+    """It begins with the glassy density c v, and until the echo it is the force of a single contact: what relaxed while
+    the first element rang was lost in a line.
+    """
+    material = {"law": "sls", "E0": 900.0, "R1": 0.5, "R2": 5e-3, "nu": 0.0, "density": 1.0}
+    scene = Scene.load("bar", {"striker.material": material, "model.gravity": 20.0})
+    alone = replace(scene, motion=Motion(end_time=0.5))
+    found = fe_contact.run(scene, tolerance=0.1, numerics={"steps": 200})
+    single = fe_contact.run(alone, tolerance=0.1, numerics={"steps": 1600})
+    assert len(found.contacts) == 2
+    history, known = found.history, single.history
+    assert history.force[0] == pytest.approx(10.0 * math.sqrt(900.0 * 1.5), rel=1e-9)
+    early = history.time < 0.4
+    missed = np.abs(history.force - known.force_at(history.time))
+    bars = history.force_error + np.interp(history.time, known.time, known.force_error)
+    assert (missed <= bars)[early].all()
+    late = (history.time > 0.1) & early
+    assert history.force_error[late].max() < 0.05 * history.force.max(), "wide only where it is a line"
+
+
 def test_memory_costs_a_bar_its_restitution() -> None:
     """A standard linear solid: the front carries the glassy density c v, heat leaves, the ledger closes."""
     changes = {"law": "sls", "E0": 900.0, "R1": 0.5, "R2": 0.2, "nu": 0.0, "density": 1.0}

@@ -215,10 +215,15 @@ def test_what_rings_at_both_ends_of_a_contact_is_the_line_beside_it_that_jumps_f
     pressed, rings = np.any(inside, axis=0), np.any(np.logical_and(inside, near), axis=0)
     force = np.where(pressed, line(time), 0.0)
     rows = np.array([time, 3.0 * time, np.ones_like(time), force + 0.3 * PUSH * rings * (time % 2.0), -time])
-    found = _cleaned(rows, spans, 1e3)
+    found, blurred = _cleaned(rows, spans, 1e3)
     if steps < 2 * (RINGING + CLEAR):
         np.testing.assert_array_equal(found, rows)
+        assert not blurred
         return
+    touched, parted = 9.5 + RINGING, 9.5 + steps - RINGING
+    assert blurred[0] == (9.5, pytest.approx(touched, abs=1.0))
+    assert blurred[1] == (pytest.approx(parted, abs=1.0), 9.5 + steps)
+    assert len(blurred) == 2 * len(spans)
     np.testing.assert_allclose(found[DEPTH], 3.0 * found[TIME], rtol=1e-12)
     jumps = np.array([spans[0][0], spans[0][1], spans[1][0]])  # where the last contact ends is told elsewhere
     np.testing.assert_array_equal(found[TIME], np.sort(np.concatenate([time, jumps, jumps])))
@@ -235,7 +240,7 @@ def test_what_rings_at_fronts_within_a_first_contact_is_the_lines_before_and_beh
     level = PUSH * (1.0 + np.floor(time / echo)) * (time < span[1])
     rings = [(time >= echo * k) & (time < echo * k + RINGING + RINGING // 2 * k) for k in (1, 2)]
     rows = np.array([time, time, np.ones_like(time), level + 0.3 * PUSH * np.any(rings, axis=0) * (time % 2.0), -time])
-    found = _cleaned(rows, [span], echo)
+    found, _ = _cleaned(rows, [span], echo)
     force = found[FORCE]
     assert force[found[TIME] < 250.0].max() == pytest.approx(3.0 * PUSH)
     for times in (1, 2):
@@ -378,7 +383,7 @@ def test_a_bar_that_touches_twice_is_told_by_both_contacts_without_their_ringing
         for at, push, given, speed in zip(time, force, np.diff(passed, prepend=0.0), velocity, strict=True)
     )  # fmt: skip
     scene: Any = SimpleNamespace(motion=SimpleNamespace(impacts=2), gravity=gravity, end_time=200.0)
-    found, contacts = read_bar(Motion(samples, none, 1), 10.0, scene, 5.0, 1e3, None)
+    found, contacts = read_bar(Motion(samples, none, 1), 10.0, scene, 5.0, 1e3, None, 1.0)
     assert found.separated
     assert found.rows[FORCE].max() == pytest.approx(1.0)
     assert found.quantities["impulse"] == pytest.approx(78.0)

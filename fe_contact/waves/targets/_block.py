@@ -168,7 +168,8 @@ def run(scene: Scene, numerics: WaveNumerics, counted: Counted = uncounted) -> R
     ending = Ending(scene.motion.impacts, pause)
     found = march(body, np.full(body.size, -scene.velocity), choices, scene.end_time, watch, ending, counted)
     followed = 2 * elements if choices.scheme.explicit and not body.massless.size else None
-    reading, contacts = read_bar(found, carried.sum(), scene, pause, echo, followed)
+    first = bar.area * math.sqrt(bar.density * bar.relaxation.glassy) * scene.velocity
+    reading, contacts = read_bar(found, carried.sum(), scene, pause, echo, followed, first)
     energy = account(found, carried.sum())  # stored: strain, and motion about the centre of mass
     return Run(reading, energy, len(found.samples) - 1, body.size, contacts)
 
