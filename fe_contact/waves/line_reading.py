@@ -21,6 +21,7 @@ from fe_contact.budget.budget import Contacts
 from fe_contact.dynamics.march import Motion, Sample
 from lumped.numbers import peak
 from lumped.scene.scene import Scene
+from lumped.targets.rod import Rod
 
 TIME, DEPTH, VELOCITY, FORCE, DENT = range(5)  # rows of a reading
 Steps = npt.NDArray[np.intp]
@@ -92,6 +93,7 @@ def read_rod(found: Motion, scene: Scene, elements: int, separated: bool) -> Rod
             rows = rows[:, : fronts[-1] + 1]
             end, rows = rows[TIME, -1], np.hstack([rows, rows[:, -1:]])
         rows = with_fronts(rows, fronts, SPOILED)
+        rows[FORCE, 0] = _first_force(scene)
     if separated:
         rows = _rod_ended(rows, end if jumping else _undented(rows), scene.gravity)
     else:
@@ -108,6 +110,13 @@ def read_rod(found: Motion, scene: Scene, elements: int, separated: bool) -> Rod
         "history_l2": 0.0,
     }
     return RodReading(rows, scene.reduced_mass, separated, quantities)
+
+
+def _first_force(scene: Scene) -> float:
+    """Z v of a flat end at touch, N, whatever the material relaxes afterwards: what so few steps tell of it jitters."""
+    rod, material = scene.target, scene.geometry.material
+    assert isinstance(rod, Rod)
+    return rod.impedance(material.uniaxial_modulus().glassy, material.density or 0.0) * scene.velocity
 
 
 def _rod_row(sample: Sample) -> tuple[float, ...]:

@@ -309,3 +309,15 @@ def test_a_front_s_force_on_a_light_striker_is_in_its_bar_or_refused(
         simulate(scene, "fe", {"steps": 1000})
     with pytest.raises(BadInput, match=r"striker\.mass: 0\.0001: .* from 0\.00148, or --method rod_waves"):
         simulate(Scene.load(name, light | {"striker.mass": 1e-4}), "fe", {})
+
+
+@pytest.mark.parametrize("tau", [1e-8, 1e-6, 1e-4])
+def test_a_flat_end_is_met_by_the_glassy_rod_however_soon_that_relaxes(tau: float) -> None:
+    """F(0+) = Z v; read off the steps behind the front it jittered with a branch that relaxes within them."""
+    material = {"law": "prony", "E_inf": 2e11, "E": [4e9], "tau": [tau], "nu": 0.3, "density": 7850.0}
+    scene = Scene.load("rod-free", {"target.material": material, "striker.mass": 0.02})
+    found = simulate(scene, "fe", {"tolerance": 0.01})
+    known = 3.1415927e-4 * np.sqrt(2.04e11 * 7850.0)
+    assert found.history.force[0] == pytest.approx(known, rel=1e-9)
+    peak = found.quantities["peak_force"]
+    assert abs(peak.value - known) <= peak.error
