@@ -139,7 +139,7 @@ class Line(Solution):
         for cause, other in self.others.items():
             least = _nearby(fine, other.reading) if self._alone else _ended_later(self.fine, other)
             if self.scene.profile.fixed_radius is not None:  # it jumps, and may stay at its peak
-                least["peak_time"] = _as_high(fine, other.reading, self.safety)
+                least["peak_time"] = max(_as_high(fine, other.reading, self.safety), _beside_peak(fine))
                 least["duration"] = max(least.get("duration", 0.0), fine.lingers if self._alone else 0.0)
             else:
                 least["duration"] = _lost_in_rounding(fine)
@@ -225,6 +225,17 @@ def _as_high(fine: RodReading, coarse: RodReading, safety: float) -> float:
     change = coarse.force_at(time) - force
     tied = time[(force + safety * np.abs(change - change[-1]) >= (1.0 - ROUNDING) * force[-1]) & (time <= end)]
     return float(np.abs(tied - when).max()) / safety
+
+
+def _beside_peak(fine: RodReading) -> float:
+    """How far the rows beside the peak's lie, s: a smooth force is highest anywhere between them. At a jump, and at
+    touch, it is there.
+    """
+    time, when = fine.rows[TIME], fine.quantities["peak_time"] or 0.0
+    place = int(np.searchsorted(time, when))
+    if place == 0 or np.count_nonzero(time == when) > 1 or place + 1 >= time.size:
+        return 0.0
+    return float(np.diff(time[place - 1 : place + 2]).max())
 
 
 def _lost_in_rounding(fine: RodReading) -> float:
