@@ -788,11 +788,11 @@ def test_the_steps_that_count_are_seconds_however_long_the_contact(settings: Num
 
 def test_a_later_contact_that_comes_late_moves_its_own_force() -> None:
     """By what the force changes in that time, counted from its own touch."""
-    touched, late, share = 2.0, 0.01, np.linspace(0.05, 0.95, 181)
-    curve = replace(TRUTH, strike=replace(STRIKE, touched_at=touched))
+    late, share = 0.01, np.linspace(0.05, 0.95, 181)
+    rows: Any = SimpleNamespace(time=share, force_error=np.zeros(share.size))
     force = [(4.0 * moved * (1.0 - moved)) ** 1.5 for moved in (share - late, share, share + late)]
     expected = np.maximum(abs(force[0] - force[1]), abs(force[2] - force[1]))
-    assert _late(curve, touched + share, late) == pytest.approx(expected, abs=1e-3)
+    assert _late(TRUTH, rows, share, late) == pytest.approx(expected, abs=1e-3)
     assert expected.max() > 0.02
 
 
