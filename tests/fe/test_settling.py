@@ -91,7 +91,9 @@ def test_what_settles_is_the_same_whatever_it_begins_with(seed: int) -> None:
 
 
 def test_a_stiffness_serves_several_depths(monkeypatch: pytest.MonkeyPatch) -> None:
-    """One for all of them where nothing flows; where a body begins to yield fewer than contact problems."""
+    """One for all of them where nothing flows; where a body begins to yield fewer than contact problems, each of which
+    is guessed so well from the ones before that it takes few guesses more.
+    """
     made, made_anew = list[float](), YieldingBody.stiffness
 
     def counted(body: YieldingBody, here: settling.Deformation) -> Stiffness:
@@ -99,12 +101,14 @@ def test_a_stiffness_serves_several_depths(monkeypatch: pytest.MonkeyPatch) -> N
         return made_anew(body, here)
 
     monkeypatch.setattr(YieldingBody, "stiffness", counted)
-    for strength, share in ((1.0, 0.0), (1e-2, 0.6)):
+    for strength, share, guesses in ((1.0, 0.0, 1.0), (1e-2, 0.6, 4.2)):
         made.clear()
         known = course(SPHERE, strength)
         loading = PlasticLoading.of(known, settings({"elements_per_contact": 6.0, "steps": 64}, known))
         loading.to(known.deepest)
-        assert len(made) <= 1 + share * loading.presser.counts.problems
+        counts = loading.presser.counts
+        assert len(made) <= 1 + share * counts.problems
+        assert counts.iterations <= guesses * counts.problems
 
 
 def test_flow_that_does_not_settle_is_lost_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
