@@ -11,7 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.fit.profile import open_side
-from lumped.identify.certainty import LikelihoodProfile, Valley, correlation_of, posterior_of, quantile
+from lumped.identify.certainty import (
+    LikelihoodProfile,
+    Valley,
+    correlation_of,
+    growth_of_colours,
+    posterior_of,
+    quantile,
+)
 from lumped.identify.histories import RTOL, Histories, Noise
 from lumped.identify.record import ByReference, FittedCurve, Identified, Interval, Posterior, ToldValley, hull
 from lumped.laws import ting
@@ -39,8 +46,8 @@ def answer(
     sought = valleys[0].sought
     residuals = histories.whitened(histories.differences(sought))
     tested = whiteness(_judged(histories, sought, residuals))
-    growth = 1.0 if tested.noise else max(map(memory, residuals))
-    widened = math.sqrt(growth)
+    of_the_rest = 1.0 if tested.noise else max(map(memory, residuals))
+    widened, growth = math.sqrt(of_the_rest), of_the_rest * growth_of_colours(histories, sought)
     bound, least = quantile(histories) * growth, histories.squares(sought)
     profiles, told = _apart([LikelihoodProfile(histories, one, least + bound, bound) for one in valleys], least)
     posterior, bands = posterior_of(histories, profiles, growth, sample) if sample else (None, None)

@@ -20,10 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.fit.profile import Ends, WalkEnd, student
-from lumped.identify.histories import Histories
+from lumped.identify.histories import Histories, Noise
 from lumped.identify.record import LEVEL, Interval, Posterior
 from lumped.numbers import Array
-from lumped.result.noise import autocovariance
+from lumped.result.noise import autocovariance, likely_colours
 
 # Rounding: slopes by differences depend on each other to about 2e-4 where the force knows one combination alone; an
 # exponent beside its factor is told by ten times as much. Safety: the share of a key in a combination that counts.
@@ -35,6 +35,7 @@ FARTHEST, DEEPEST = 1.0, -10.0  # of a start: from its valley, and the logarithm
 TAIL = 6.0  # degrees of freedom: a proposal has to reach farther than what it stands for
 SHARE = 0.8  # of the moves that go there: the others find what lies elsewhere
 SEED = 1  # of the draws: the same sample every day
+COLOURS, ROUGH = 200, 1e-3  # work: colours that are tried for every curve; rounding: far below what they tell
 BANDS = 200  # work: draws of which the bands of the force are made
 
 Density = Callable[[Array], float]
@@ -52,6 +53,61 @@ class Valley:
 def quantile(histories: Histories) -> float:
     """By how much the sum of squares over the noise may grow within an interval: Fisher's F(1, n - p), squared t."""
     return student(histories.freedom, LEVEL) ** 2
+
+
+def growth_of_colours(histories: Histories, sought: Array) -> float:
+    """How many times as far the sum of squares may grow because short silences tell the colours, and not for sure.
+
+    The colours are integrated out of the posterior of the linearized residuals (Zellner and Tiao, J. Am. Stat. Assoc.
+    59 (1964) 763): each that the silences allow has least squares, a deviation and Student's t of its own. Told is the
+    square of half an interval over that by the colours taken, on average over the keys.
+    """
+    if not any(noise.silences for noise in histories.noises):
+        return 1.0
+    rng, left, slopes = np.random.default_rng(SEED), histories.differences(sought), _unseen_slopes(histories, sought)
+    drawn = [
+        likely_colours(noise.silences, COLOURS, rng) if noise.silences else [noise.colour] * COLOURS
+        for noise in histories.noises
+    ]
+    every = [_refitted(histories, left, slopes, colours) for colours in zip(*drawn, strict=True)]
+    _, taken = _refitted(histories, left, slopes, [noise.colour for noise in histories.noises])
+    shares = [
+        _half_width(shifts, widths, histories.freedom) / (student(histories.freedom, LEVEL) * width)
+        for _, shifts, widths, width in zip(histories.keys, *np.stack(every, axis=2), taken, strict=False)
+        if width > 0.0  # a key that changes nothing has no interval
+    ]
+    return float(np.mean(np.square(shares))) if shares else 1.0
+
+
+def _unseen_slopes(histories: Histories, sought: Array) -> list[Array]:
+    """How what is left of every curve changes with all that is sought, N, (n, size), whatever its noise."""
+    white = replace(histories, noises=(Noise(1.0, np.zeros(0)),) * len(histories.samples))
+    ends = np.cumsum([one.time.size for one in histories.samples])
+    return np.split(white.slopes(sought), ends[:-1])
+
+
+def _refitted(histories: Histories, left: Sequence[Array], slopes: Sequence[Array], colours: Sequence[Array]) -> Array:
+    """How far off the least squares by other colours lie, and the deviations there, (2, size)."""
+    noises = tuple(replace(noise, colour=colour) for noise, colour in zip(histories.noises, colours, strict=True))
+    other = replace(histories, noises=noises)
+    residuals, seen = (np.concatenate(other.whitened(columns)) for columns in (left, slopes))
+    inverse = np.linalg.pinv(seen)
+    off = -inverse @ residuals
+    rest = residuals + seen @ off
+    return np.array([off, math.sqrt(float(rest @ rest) / other.freedom) * np.linalg.norm(inverse, axis=1)])
+
+
+def _half_width(shifts: Array, widths: Array, freedom: int) -> float:
+    """Half of the interval around zero that holds the level of Student's t, each shifted, (n,), and so wide."""
+    from scipy.optimize import brentq
+    from scipy.special import stdtr
+
+    def excess(half: float) -> float:
+        outside = stdtr(freedom, (shifts - half) / widths) + stdtr(freedom, (-shifts - half) / widths)
+        return float(np.mean(outside)) - (1.0 - LEVEL)
+
+    most = float(np.max(np.abs(shifts) + student(freedom, LEVEL) * widths))  # no colour alone asks for more
+    return float(brentq(excess, 0.0, 2.0 * most, rtol=ROUGH))  # rounding: beyond that end
 
 
 @dataclass(frozen=True, eq=False)

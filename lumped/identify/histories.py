@@ -113,10 +113,14 @@ class Correction:
 
 @dataclass(frozen=True, eq=False)
 class Noise:
-    """Of one curve: the deviation of what is new in every row, N, and the colour, see :mod:`lumped.result.noise`."""
+    """Of one curve: the deviation of what is new in every row, N, and the colour, see :mod:`lumped.result.noise`.
+
+    `silences`: what told the colour, N, each (n,); none where it is known, or white for want of rows.
+    """
 
     deviation: float
     colour: Array
+    silences: tuple[Array, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault, NotReached
 from lumped.fit.profile import REACHED
@@ -68,7 +69,7 @@ def search(
         problem_of(scene)
     if low_pass and any(one.step is None for one in samples):
         raise BadInput(Fault("low_pass", "", "not known of rows in uneven steps; accepted: equal steps"))
-    noises = tuple(Noise(GUESSED * one.peak, _colour(one, None, corner)) for one in samples)
+    noises = tuple(Noise(GUESSED * one.peak, _colour(one, (), corner)) for one in samples)
     begun = Histories(file, keys, samples, noises, low_pass)
     if begun.freedom <= 0:
         reason = f"{begun.rows} rows for {begun.size} numbers; accepted: more rows than numbers sought"
@@ -82,13 +83,19 @@ def _check_own(keys: Sequence[FreeKey], own: Mapping[str, Mapping[str, object]])
         raise BadInput(Fault(FREE, name, "free, and a curve's own; accepted: one of them") for name in sorted(both))
 
 
-def _colour(one: Samples, silent: Array | None, corner: float | None) -> Array:
-    """The colour by the corner of a low pass, Hz, or by the silence, N; none where neither tells it."""
-    if one.step is None:
-        return np.zeros(0)
-    if corner is not None:
+def _colour(one: Samples, silences: Sequence[Array], corner: float | None) -> Array:
+    """The colour by the corner of a low pass, Hz, or by silences, N, each (n,); none where neither tells it."""
+    if one.step is not None and corner is not None:
         return colour_of_corner(corner, one.step)
-    return np.zeros(0) if silent is None or silent.size < SILENT else colour_of(silent)
+    return colour_of(*silences)
+
+
+def _silences(one: Samples, left: Array, pressed: NDArray[np.bool_], corner: float | None) -> tuple[Array, ...]:
+    """What is left before touch and after the contact, N, each (n,), where that alone tells the colour."""
+    if one.step is None or corner is not None:
+        return ()
+    before, _, after = np.split(left, (pressed.argmax(), pressed.size - pressed[::-1].argmax()))
+    return (before, after) if before.size + after.size >= SILENT else ()
 
 
 def _most_likely(histories: Histories, corner: float | None) -> tuple[Histories, tuple[Valley, ...]]:
@@ -148,12 +155,13 @@ def reweighed(histories: Histories, sought: Array, corner: float | None) -> Hist
     noises = list[Noise]()
     every = zip(histories.samples, histories.differences(sought), histories.pressed(sought), strict=True)
     for one, left, pressed in every:
-        colour = _colour(one, left[~pressed], corner)
+        silences = _silences(one, left, pressed, corner)
+        colour = _colour(one, silences, corner)
         new = whitened(left, colour)
         share = histories.size * one.time.size / histories.rows / len(histories.samples)  # of what is sought
         freedom = max(new.size - share, 1.0)
         deviation = math.sqrt(float(new @ new) / freedom)
-        noises.append(Noise(max(deviation, 1e-12 * one.peak), colour))  # rounding: a computed curve has none
+        noises.append(Noise(max(deviation, 1e-12 * one.peak), colour, silences))  # rounding: a computed curve has none
     return replace(histories, noises=tuple(noises))
 
 

@@ -20,26 +20,82 @@ REJECTED = 0.01  # below this probability the residuals are no noise
 FADED = 0.05  # a correlation below which the memory of residuals has ended
 
 
-def colour_of(silence: Array) -> Array:
-    """The coefficients a_k of a silence, N, (n,): Yule and Walker's, of the order of the least Bayesian criterion."""
-    covariance = autocovariance(silence - silence.mean(), HIGHEST_ORDER)
-    best: Array = np.zeros(0)
-    least = math.inf
+def colour_of(*silences: Array) -> Array:
+    """The coefficients a_k of silences, N, each (n,), of the order of the least Bayesian criterion."""
+    colours, criteria = _recursions(silences)
+    return colours[int(np.argmin(criteria))]
+
+
+def _recursions(silences: Sequence[Array]) -> tuple[list[Array], Array]:
+    """Yule and Walker's coefficients of every order, each (order,), and the Bayesian criteria, (orders,).
+
+    No mean is taken away: without a force there is none, and a short silence would lose its slow noise with it.
+    """
+    rows = sum(part.size for part in silences)
+    covariance = sum((s.size * autocovariance(s, HIGHEST_ORDER) for s in silences), np.zeros(HIGHEST_ORDER + 1))
     if not covariance[0] > 0.0:
-        return best
+        return [np.zeros(0)], np.zeros(1)
+    found, criteria = list[Array](), list[float]()
     for order in range(HIGHEST_ORDER + 1):
-        found = _coefficients(covariance, order)
-        left = max(float(covariance[0] - found @ covariance[1 : order + 1]), 1e-300)
-        criterion = silence.size * math.log(left) + order * math.log(silence.size)
-        if criterion < least:
-            best, least = found, criterion
-    return best
+        found.append(_coefficients(covariance, order))
+        left = max(float(covariance[0] - found[-1] @ covariance[1 : order + 1]), 1e-300)
+        criteria.append(rows * math.log(left) + order * math.log(rows))
+    return found, np.array(criteria)
 
 
 def _coefficients(covariance: Array, order: int) -> Array:
     """Those of a recursion of an order, from the covariances of lags from zero on."""
     lags = np.abs(np.subtract.outer(np.arange(order), np.arange(order)))
     return np.asarray(np.linalg.lstsq(covariance[lags], covariance[1 : order + 1], rcond=None)[0])
+
+
+def likely_colours(silences: Sequence[Array], count: int, rng: np.random.Generator) -> list[Array]:
+    """So many colours that silences, N, each (n,), allow, one as likely as another.
+
+    Orders are as frequent as their criteria say (Kass and Raftery, doi 10.1080/01621459.1995.10476572), coefficients as
+    those of a regression of the rows on those before, with Jeffreys' prior. All are shuffled, to be paired with those
+    of another curve.
+    """
+    every, criteria = _recursions(silences)
+    shares = np.exp(-0.5 * (criteria - criteria.min()))
+    numbers = rng.multinomial(count, shares / shares.sum()).tolist()
+    drawn = [_drawn(own, silences, count, rng)[:number] for own, number in zip(every, numbers, strict=True) if number]
+    found = [colour for colours in drawn for colour in colours]
+    return [found[i] for i in rng.permutation(count)]
+
+
+def _drawn(own: Array, silences: Sequence[Array], count: int, rng: np.random.Generator) -> Array:
+    """Coefficients of an order, (count, order): around the least squares by Student's t, then as the prior says."""
+    order, longer = own.size, [part for part in silences if part.size > own.size]
+    before = np.concatenate([_rows_before(part, order) for part in longer])
+    rows = np.concatenate([part[order:] for part in longer])
+    inverse, freedom = np.linalg.pinv(before), max(rows.size - order, 1)
+    left = rows - before @ (inverse @ rows)
+    widths = np.sqrt(float(left @ left) / rng.chisquare(freedom, (count, 1)))
+    found = inverse @ rows + widths * (rng.normal(size=(count, rows.size)) @ inverse.T)
+    found[0] = own  # it fades, whatever the others do
+    prior = _prior(found)
+    return np.asarray(found[rng.choice(count, count, p=prior / prior.sum())])
+
+
+def _rows_before(series: Array, order: int) -> Array:
+    """Of every row but the first ones the rows before it, the last first, (n - order, order)."""
+    rows = series.size - order
+    return np.array([series[first : first + rows] for first in range(order - 1, -1, -1)]).reshape(order, rows).T
+
+
+def _prior(colours: Array) -> Array:
+    """Jeffreys' prior of recursions, (count, order): prod_k (1 - r_k^2)^(-k/2), none where they grow, (count,).
+
+    It is the root of the rows' covariance over what is new in them, by the partial correlations r_k (Durbin, Levinson).
+    """
+    found = np.ones(len(colours))
+    for order in range(colours.shape[1], 0, -1):
+        last, others = colours[:, order - 1], colours[:, : order - 1]
+        rest = np.where(np.abs(last) < 1.0, 1.0 - last**2, np.inf)
+        found *= rest ** (-0.5 * order)
+        colours = (others + last[:, None] * others[:, ::-1]) / rest[:, None]
+    return found
 
 
 def colour_of_corner(corner: float, step: float) -> Array:
