@@ -58,7 +58,9 @@ STEPS, RIM_STEPS = 33, 18  # of a loading over six e-folds of the depth or so, t
 FOLLOWING, STEPS_FOLLOWING, RIM_FOLLOWING = 0.4, 0.6, 0.4
 FURTHER, FURTHEST = 0.35, 40.0  # power of the depth over that of first yield that steps follow too, up to there
 FEWEST_STEPS = 6  # of a run that tells anything
-MESH_ORDER, RIM_ORDER = 2.0, 1.0  # of forces: 2.3 to 4.6 where an edge is a node of a growing mesh, but for noise
+# Of forces: 2.3 to 4.6 where an edge is a node of a growing mesh, but for noise; the least under a rim, and of meshes
+# that are less than so many times as fine as each other: they differ by noise as much.
+MESH_ORDER, LEAST_ORDER, APART = 2.0, 1.0, 2.0
 ONWARDS = 1.0 / 3.0  # of what half the steps change: their square counts out (Richardson)
 NOISY = 1.3  # of bars, by which they may scatter from mesh to mesh
 # Where flow turns under an edge, bars fall with the settings to 1.5 to 2.
@@ -271,7 +273,7 @@ class Course:
     def settling(self, numerics: Numerics) -> float:
         """By how much errors are trusted to fall from one of these meshes to the next."""
         finer = numerics.elements_per_contact / self.coarsest(numerics)
-        return float(finer ** (0.5 * (RIM_ORDER if self.rim else MESH_ORDER)))
+        return float(finer ** (0.5 * (MESH_ORDER if finer >= APART and not self.rim else LEAST_ORDER)))
 
     @property
     def power(self) -> float:
