@@ -48,7 +48,7 @@ from lumped.result.result import LedgerEntry, Result, meets
 from lumped.scene.scene import Scene
 
 # Processor time, s, of an impact at so loose a tolerance, about, and the power that it follows a tighter one with.
-SECONDS, SO_LOOSE, TIGHTER = 12.0, 5e-3, 0.55
+SECONDS, SO_LOOSE, TIGHTER = 8.0, 5e-3, 0.45
 ROWS = 400  # of each half of an impact: the line between two errs by 1e-5 of the force
 GRID = 500  # depths at which a loading is told
 SPRUNG = np.linspace(0.0, 1.0, 101)  # shares of what springs back, from parting on
