@@ -13,7 +13,7 @@ of least energy, of which the first guess is Newton's step, shortened until the 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -121,9 +121,8 @@ class YieldingBody:
         reach = np.zeros((*skin.weights.shape, surface.size))
         facets, points = np.ogrid[: along.shape[0], : skin.weights.shape[1]]
         reach[facets[..., None], points[..., None], np.searchsorted(surface, along)[:, None]] = skin.trace
-        body = CoredBody(body.core, body.response, body.rest, body.pull, body.rim, free)
         pattern = Pattern.of(blocks, free, body.core.size)
-        return cls(body, skin, yielding, reach.reshape(-1, surface.size), pattern)
+        return cls(replace(body, free=free), skin, yielding, reach.reshape(-1, surface.size), pattern)
 
     def displaced(self, displacement: Array, springs: Springs, state: State) -> Deformation:
         """By (2 N,), after ``state``."""
@@ -214,7 +213,9 @@ class Guesses:
     def _closed(self, alone: Array, begin: Array, touching: Points | None) -> Array:
         """The surface (m,) that is ``alone`` (m,) without the striker, under it: Newton's steps, by falling energy.
 
-        They begin with points (n,) that touch, or without these from a surface (m,).
+        They begin with points (n,) that touch, or without these from a surface (m,). A tangent that flows gives way so
+        far without the striker that the gap of :func:`fe_contact.contact.problem.solve`, a difference from there, would
+        keep two digits; a surface that is mended step by step keeps all.
         """
         schur, reach, springs = self.stiffness.eliminated.schur, self.body.reach, self.springs
 
