@@ -32,7 +32,7 @@ from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics, tolerance_of
 from fe_contact.solids.base import State
 from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.newton import Encounter, Equilibrium, EquilibriumLost, material_of
-from fe_contact.solids.pressing import MESH_ORDER, WIDENING, Solid, contact_radius, pressed_first
+from fe_contact.solids.pressing import MESH_ORDER, Solid, contact_radius, pressed_first
 from fe_contact.solids.relaxing import Fading, FadingLaw, doubled
 from fe_contact.steppers.steps import March, Strike, Work
 from lumped.result.model_ledger import Peak, model_ledger
@@ -102,8 +102,8 @@ class Marcher:
 
     @property
     def widening(self) -> float:
-        """Power of the depth that a contact is wide by, about: F ~ depth a."""
-        return self.power - 1.0 if self.power > 1.0 else WIDENING
+        """Power of the depth that a contact is wide by, about: F ~ depth a; a flat end's hardly widens."""
+        return max(self.power - 1.0, 0.0)
 
     def march(self, counted: Counted = uncounted) -> March:
         """From the first touch to separation, or to the end of the motion; ``counted`` is told of every step.
