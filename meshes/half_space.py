@@ -11,7 +11,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from meshes.errors import MeshError
-from meshes.triangles import Outline, beyond, checked, distance, elements_checked, filled, larger, smaller, tagged
+from meshes.triangles import (
+    Outline,
+    beside_flat,
+    beyond,
+    checked,
+    distance,
+    elements_checked,
+    filled,
+    flat_checked,
+    larger,
+    smaller,
+    tagged,
+)
 
 if TYPE_CHECKING:
     from skfem import MeshTri
@@ -61,7 +73,13 @@ def half_space(
 
 
 def half_space_for_waves(
-    elements_per_radius: float, smallest: float, far_radius: float, finer: float = 1.0, growth: float = WAVE_GROWTH
+    elements_per_radius: float,
+    smallest: float,
+    far_radius: float,
+    finer: float = 1.0,
+    growth: float = WAVE_GROWTH,
+    flat: float = 0.0,
+    beside: float = 1.0,
 ) -> MeshTri:
     """Triangles of the same outline under contacts that end anywhere up to ``r = 1``, all resolved alike.
 
@@ -75,6 +93,8 @@ def half_space_for_waves(
     far_radius : radius of the quarter disc, 2 to 1e6.
     finer : times as many elements at the surface as their growth into the body is for, 1 to 16.
     growth : of the element size per unit distance, for one element along the radius, 0.1 to 3.
+    flat : radius of a flat end of the striker, 0 to 1, towards whose rim elements shrink; 0: none.
+    beside : distance from that rim at which the smallest contact ends, 1e-4 to 1.
 
     Raises
     ------
@@ -87,7 +107,8 @@ def half_space_for_waves(
     far = checked("far_radius", far_radius, 2.0, 1e6)
     within = smaller(larger("x", repr(low)), repr(ZONE))
     inward = most * min(1.0 / elements, OF_WAVE_GROWTH)
-    return _quarter(f"{within}/{at_surface!r}+{inward!r}*(Fabs(y)+{beyond('x', ZONE)})", ZONE, far)
+    size = f"{within}/{at_surface!r}+{inward!r}*(Fabs(y)+{beyond('x', ZONE)})"
+    return _quarter(beside_flat(size, at_surface, *flat_checked(flat, beside)), ZONE, far)
 
 
 def _quarter(size: str, node: float, far_radius: float) -> MeshTri:

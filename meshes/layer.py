@@ -8,7 +8,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from meshes.triangles import beyond, checked, distance, elements_checked, larger, polygon, smaller, tagged
+from meshes.triangles import (
+    beside_flat,
+    beyond,
+    checked,
+    distance,
+    elements_checked,
+    flat_checked,
+    larger,
+    polygon,
+    smaller,
+    tagged,
+)
 
 if TYPE_CHECKING:
     from skfem import MeshTri
@@ -24,7 +35,14 @@ ZONE = 1.1  # the surface is fine up to this radius
 RIM = 1e-3  # element size at a rim over its radius, for one element along the radius
 
 
-def layer(elements_per_radius: float, smallest: float, thickness: float, width: float) -> MeshTri:
+def layer(
+    elements_per_radius: float,
+    smallest: float,
+    thickness: float,
+    width: float,
+    flat: float = 0.0,
+    beside: float = 1.0,
+) -> MeshTri:
     """Triangles of the layer ``-thickness <= z <= 0``, ``r <= 1.1 + width``, fine for contact radii up to one.
 
     Doubling ``elements_per_radius`` halves the element size everywhere.
@@ -35,6 +53,8 @@ def layer(elements_per_radius: float, smallest: float, thickness: float, width: 
     smallest : the smallest contact radius to resolve so, 1e-6 to 1.
     thickness : of the layer, 1e-3 to 1e6.
     width : of what lies beyond the contact, 1e-3 to 1e8.
+    flat : radius of a flat end of the striker, 0 to 1, towards whose rim elements shrink; 0: none.
+    beside : distance from that rim at which the smallest contact ends, 1e-4 to 1.
 
     Returns
     -------
@@ -46,7 +66,8 @@ def layer(elements_per_radius: float, smallest: float, thickness: float, width: 
     """
     n, low, thick, wide = _checked(elements_per_radius, smallest, thickness, width)
     growth, largest = min(GROWTH / n, LARGEST_GROWTH), min(LARGEST / n, COARSEST)
-    return _rectangle(_sizes(n, low, thick, growth, largest), ZONE, thick, wide)
+    size = _sizes(n, low, thick, growth, largest)
+    return _rectangle(beside_flat(size, n, *flat_checked(flat, beside)), ZONE, thick, wide)
 
 
 def layer_for_waves(

@@ -20,6 +20,7 @@ from fe_contact.errors import BodyTooThin, ContactTooWide, IndentationNotSettled
 from fe_contact.settings import Numerics
 from lumped.scene.indenter import Indenter
 from lumped.shapes import Shape
+from meshes.triangles import LEAST_BESIDE
 
 EDGE_WINDOW = 0.02  # the contact edge may lie this far from the node where the mesh is finest
 RESCALINGS = 60  # work: of the mesh, until the contact edge lies where it is finest
@@ -36,6 +37,9 @@ STIFFER = 6.0  # penalty where the contact ends at a rim, over that where it may
 REFINEMENT, LINE_REFINEMENT = 2.5, 2.0
 STRUCK_REFINEMENT = 4.0  # the same in an impact: its force must be smooth in time
 FINITE_REFINEMENT = 2.0  # the same where strains are large
+NEAREST = (
+    0.2  # how far beside the rim of a flat end contacts of an impact are resolved, over the largest: F is 0.1 there
+)
 FAINT = 1e-4  # share of the peak force below which an impact's contact may be resolved less
 SPHERE_REFINEMENT = 3.0  # the same on spheres, of which two may touch whose meshes do not match
 WIDEST = 1.2  # rad from the first touch: a contact on a circle ends before
@@ -330,16 +334,32 @@ def _end(places: Array, signed_pressure: Array, gap: Array, touched: float, heig
 
 @dataclass(frozen=True)
 class Zone:
-    """Where contacts end: the largest radius, in the target's own places, and the smallest over it."""
+    """Where contacts end: the largest radius, in the target's own places, and the smallest over it.
+
+    Of a striker with a flat end also ``flat``, that end's radius over the largest, and how far ``beside`` its rim the
+    smallest one ends.
+    """
 
     reference: float
     smallest: float
+    flat: float = 0.0
+    beside: float = 1.0
 
     @classmethod
-    def of(cls, radii: Array, margin: float = MARGIN) -> Zone:
-        """Of contact radii, m."""
-        reference = margin * float(radii.max())
-        return cls(reference, float(radii.min()) / reference)
+    def of(cls, radii: Array, margin: float = MARGIN, flat: float = 0.0) -> Zone:
+        """Of contact radii under a ``flat`` end as wide, m."""
+        least, largest = float(radii.min()), float(radii.max())
+        reference, nearest = margin * largest, least - flat if least > flat else NEAREST * (largest - flat)
+        beside = max(nearest / reference, LEAST_BESIDE) if flat else 1.0
+        return cls(reference, least / reference, flat / reference, beside)
+
+    @classmethod
+    def struck(cls, shape: Shape, reference: float) -> Zone:
+        """Of an impact whose contact grows from the first touch to nearly the ``reference``, m."""
+        flat, smallest = shape.flat_radius / reference, smallest_struck(shape)
+        if not flat:
+            return cls(reference, smallest)
+        return cls(reference, max(smallest, flat), flat, max(NEAREST * (1.0 - flat), LEAST_BESIDE))
 
     @classmethod
     def round(cls, radii: Array, radius: float) -> Zone:

@@ -45,6 +45,7 @@ from fe_contact.steppers.scaled_surface import ScaledSurface
 from fe_contact.targets.base import MeshedTarget
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
+from meshes.half_space import WAVE_GROWTH
 
 FINER = 2.0  # elements at the surface over those which the growth into the body is for, where strains are large
 ENDS = ("base", "side")  # of a box of it
@@ -164,16 +165,17 @@ def _upwards(basis: Basis, depth: float) -> Matrix:
 
 def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:
     """The half-space for large strains, on one mesh for all contacts; ``radii`` expected of them, m."""
-    zone = Zone.of(radii, FINITE_MARGIN)
+    zone = Zone.of(radii, FINITE_MARGIN, indenter.profile.flat_radius)
     elements = FINITE_REFINEMENT * numerics.elements_per_contact
-    body = _solid(elements, zone.smallest, numerics.far_radius, numerics.order)
+    body = _solid(elements, (zone.smallest, zone.flat, zone.beside), numerics.far_radius, numerics.order)
     return SolidMesh(body, zone.reference)
 
 
 @cached
-def _solid(elements: float, smallest: float, far_radius: float, order: int) -> ElasticBody:
+def _solid(elements: float, ends: tuple[float, float, float], far_radius: float, order: int) -> ElasticBody:
     """In units of the reference radius."""
-    mesh = made(meshes.half_space_for_waves, elements / FINER, smallest, far_radius, FINER)
+    smallest, rim, beside = ends
+    mesh = made(meshes.half_space_for_waves, elements / FINER, smallest, far_radius, FINER, WAVE_GROWTH, rim, beside)
     basis = basis_on(mesh, order)
     return ElasticBody(basis, partial(_stiffness, basis), 2 * basis.get_dofs("axis").flatten(), flat(basis))
 

@@ -27,7 +27,6 @@ from fe_contact.bodies.pressing import (
     Still,
     Zone,
     held,
-    smallest_struck,
     thickness_over,
 )
 from fe_contact.settings import Numerics
@@ -40,52 +39,41 @@ from lumped.targets.layer import Layer
 if TYPE_CHECKING:
     from skfem import MeshTri
 
-Sizes = tuple[float, float | None, float, float]  # elements, smallest contact, thickness, width: see _mesh
+Sizes = tuple[float, float, float, tuple[float, float, float] | None]  # see _mesh
 SIDES = 0.4  # distance of the sides in thicknesses, per far radius of the settings
 
 
 def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     """The layer at rest; ``radii``, m: between which the contacts will end."""
-    reference, smallest = _pressed(indenter.shape.fixed_radius, radii)
+    rim, profile = indenter.shape.fixed_radius, indenter.profile
+    zone = Zone.of(radii, flat=profile.flat_radius) if rim is None else Zone(rim, 1.0)
     refinement = LINE_REFINEMENT if indenter.shape.plane else REFINEMENT
-    thickness, body = _meshed(indenter.geometry, reference, smallest, refinement, numerics)
+    thickness, body = _meshed(indenter.geometry, zone, refinement, numerics)
     surface = on_mesh(body, indenter.material.nu)
-    return FixedStill(surface, indenter, numerics, reference, reference, thickness)
+    return FixedStill(surface, indenter, numerics, zone.reference, zone.reference, thickness)
 
 
 def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:
     """The layer for large strains; ``radii``, m: those of the contacts expected."""
-    zone = Zone.of(radii, FINITE_MARGIN)
-    _, body = _meshed(indenter.geometry, zone.reference, zone.smallest, FINITE_REFINEMENT, numerics)
+    zone = Zone.of(radii, FINITE_MARGIN, indenter.profile.flat_radius)
+    _, body = _meshed(indenter.geometry, zone, FINITE_REFINEMENT, numerics)
     return SolidMesh(body.follow(), zone.reference)
-
-
-def _pressed(rim: float | None, radii: Array) -> tuple[float, float | None]:
-    """The largest of contact ``radii``, m, and the smallest over it; of an end with a ``rim``, m, that alone."""
-    if rim is not None:
-        return rim, None
-    zone = Zone.of(radii)
-    return zone.reference, zone.smallest
 
 
 def meshed(geometry: Geometry, numerics: Numerics) -> Recipe[ElasticBody]:
     """The layer in an impact whose contact grows from nothing to the radius that the settings expect."""
-    smallest = None if geometry.shape.fixed_radius is not None else smallest_struck(geometry.shape)
-    return _meshed(geometry, numerics.contact_radius, smallest, STRUCK_REFINEMENT, numerics)[1]
+    shape, reference = geometry.shape, numerics.contact_radius
+    zone = Zone.struck(shape, reference) if shape.fixed_radius is None else Zone(reference, 1.0)
+    return _meshed(geometry, zone, STRUCK_REFINEMENT, numerics)[1]
 
 
-def _meshed(
-    geometry: Geometry, reference: float, smallest: float | None, refinement: float, numerics: Numerics
-) -> tuple[float, Recipe[ElasticBody]]:
-    """Thickness over the ``reference`` radius, m, and the layer in its units; ``refinement``: elements over the usual.
-
-    ``smallest`` contact over the reference, None under a rim.
-    """
-    target = geometry.target
+def _meshed(geometry: Geometry, zone: Zone, refinement: float, numerics: Numerics) -> tuple[float, Recipe[ElasticBody]]:
+    """Thickness over the radius of a zone, and the layer in its units; ``refinement``: elements over the usual."""
+    target, rim = geometry.target, geometry.shape.fixed_radius is not None
     assert isinstance(target, Layer)
-    thickness = thickness_over(reference, target.thickness)
+    thickness = thickness_over(zone.reference, target.thickness)
     elements, width = refinement * numerics.elements_per_contact, SIDES * numerics.far_radius * thickness
-    sizes = (elements, smallest, thickness, width)
+    sizes = (elements, thickness, width, None if rim else (zone.smallest, zone.flat, zone.beside))
     return thickness, _body.recipe(sizes, numerics.order, target.base == "bonded", geometry.shape.plane)
 
 
@@ -97,11 +85,12 @@ def _body(sizes: Sizes, order: int, bonded: bool, plane: bool) -> ElasticBody:
     return ElasticBody(basis, partial(matrix, basis, plane), fixed, flat(basis, 2 if plane else 3))
 
 
-def _mesh(elements: float, smallest: float | None, thickness: float, width: float) -> MeshTri:
-    """Fine for every contact from the smallest, or, without one, at the rim."""
-    if smallest is None:
+def _mesh(elements: float, thickness: float, width: float, ends: tuple[float, float, float] | None) -> MeshTri:
+    """Fine wherever contacts end, or, without ``ends``, at the rim."""
+    if ends is None:
         return made(meshes.layer_under_rim, elements, thickness, width)
-    return made(meshes.layer, elements, smallest, thickness, width)
+    smallest, flat, beside = ends
+    return made(meshes.layer, elements, smallest, thickness, width, flat, beside)
 
 
 def matrix(basis: Basis, plane: bool, bulk: float, shear: float) -> Matrix:

@@ -11,11 +11,16 @@ import numpy as np
 import pytest
 
 import fe_contact
+from fe_contact.indentation import indent
 from lumped import Scene, laws, simulate
+from lumped.materials import Material, Relaxation
+from lumped.scene.indenter import Indenter
+from lumped.scene.tables import Model
 from lumped.shapes import Shape, Sphere
 from lumped.shapes.profile import Profile
 from lumped.shapes.rounded_punch import RoundedPunch
 from lumped.shapes.sphere_cone import SphereCone
+from lumped.targets import HalfSpace
 from lumped.targets.layer import Layer
 
 RULED = ("peak_force", "peak_depth", "duration", "impulse", "restitution")
@@ -30,6 +35,11 @@ def sphere_cone(random: np.random.Generator, width: float) -> Shape:
 def rounded_punch(random: np.random.Generator, width: float) -> Shape:
     """A flat from a tenth of the contact to nearly all of it."""
     return RoundedPunch(width * float(random.uniform(0.1, 1.5)), width * float(10.0 ** random.uniform(-0.5, 1.5)))
+
+
+def narrow_edge(random: np.random.Generator, width: float) -> Shape:
+    """All depths end their contacts close beside one radius, under a pressure that is nearly infinite there."""
+    return RoundedPunch(width, width * float(10.0 ** random.uniform(-2.0, -0.5)))
 
 
 def profile(random: np.random.Generator, width: float) -> Shape:
@@ -84,3 +94,33 @@ def test_impacts_on_a_layer_lie_within_their_bars(
         assert finer.converged, scene
         for other in (exact, finer):
             assert not uncovered(found, other, RULED), scene
+
+
+@pytest.mark.parametrize("kinematics", ["small", "finite"])
+@pytest.mark.parametrize("target", [HalfSpace(), Layer(2.0, "bonded"), Layer(0.7, "sliding")])
+def test_a_flat_end_with_a_narrow_edge_is_pressed_within_its_bars(
+    target: HalfSpace | Layer, kinematics: str, campaign_size: Callable[[int], int]
+) -> None:
+    """Against the closed curve and the integral equation's, from which large strains depart by the depth at most."""
+    random, depths = np.random.default_rng(1999), (3e-4, 1e-3)
+    for _ in range(campaign_size(4)):
+        material = Material(Relaxation(1e6), float(random.uniform(0.2, 0.49)))
+        pressed = Indenter(narrow_edge(random, 1.0), material, target, model=Model(kinematics=kinematics))
+        tolerance = float(random.choice([3e-2, 1e-2, 3e-3]))
+        found = indent(pressed, depths, {"tolerance": tolerance})
+        curve = target.load_curve(pressed.profile, material.nu)
+        known = pressed.modulus(False) * curve.force(np.array(depths))
+        departs = known * np.array(depths) if kinematics == "finite" else 0.0
+        assert found.converged, pressed
+        assert np.all(np.abs(found.force - known) <= found.force_error + departs), (pressed, tolerance)
+
+
+@pytest.mark.tenth
+@pytest.mark.parametrize("target", [HalfSpace(), Layer(0.01, "bonded")])
+def test_a_relaxing_impact_by_a_narrow_edge_takes_few_iterations_a_step(target: HalfSpace | Layer) -> None:
+    """Its contact hardly widens, and is begun so: on the whole body every iteration is dear."""
+    base = Scene.load("polymer-sphere")
+    scene = replace(base, shape=RoundedPunch(2e-3, 3e-4), target=target, model=replace(base.model, kinematics="finite"))
+    found = fe_contact.run(scene, tolerance=3e-2)
+    assert found.converged
+    assert found.work["iterations"] <= 4 * found.work["contact_problems"]

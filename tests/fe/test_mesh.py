@@ -136,9 +136,32 @@ def test_under_a_rim_elements_shrink_with_their_distance(thickness: float) -> No
     assert length[start == 1.0] < 1e-3
 
 
-@pytest.mark.parametrize(("place", "value", "name"), [(0, 0.5, "elements"), (1, 2.0, "small"), (2, 0.0, "thick")])
+FLAT_ENDS: dict[str, Callable[[float, float, float], object]] = {
+    "half_space": lambda elements, flat, beside: meshes.half_space_for_waves(
+        elements / 2.0, 0.9, 10.0, 2.0, flat=flat, beside=beside
+    ),
+    "layer": lambda elements, flat, beside: meshes.layer(elements, 0.9, 2.0, 10.0, flat, beside),
+}
+
+
+@pytest.mark.parametrize("kind", FLAT_ENDS)
+def test_beside_a_flat_end_contacts_are_resolved_alike(kind: str) -> None:
+    """Half the distance from its rim to the nearest one asks for a few elements more, not for twice as many."""
+    flat, beside = 0.9, 0.02
+    mesh, nearer = (FLAT_ENDS[kind](8.0, flat, one) for one in (beside, 0.5 * beside))
+    start, length = surface_facets(mesh)
+    distance = np.minimum(np.abs(start - flat), np.abs(start + length - flat))
+    assert np.all(length <= 1.6 * 5.0 / 8.0 * (beside + distance))
+    more = surface_facets(nearer)[0].size - start.size
+    assert 1 <= more <= 0.3 * start.size
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "name"),
+    [(0, 0.5, "elements"), (1, 2.0, "small"), (2, 0.0, "thick"), (4, 1.2, "flat"), (5, 0.0, "distance")],
+)
 def test_a_layer_outside_its_ranges_is_named(place: int, value: float, name: str) -> None:
-    numbers = [8.0, 0.1, 1.0, 4.0]
+    numbers = [8.0, 0.1, 1.0, 4.0, 0.5, 0.1]
     numbers[place] = value
     with pytest.raises(MeshError, match=f"{name}.*accepted"):
         meshes.layer(*numbers)
@@ -204,10 +227,11 @@ def washer_of(random: np.random.Generator) -> tuple[object, ...]:
 
 
 ELEMENTS, SHARE, FINER = (1, 200), (1e-6, 1), (1, 16)
+FLAT, BESIDE = (1e-3, 1), (1e-4, 1)
 RANDOM: dict[str, Callable[[np.random.Generator], tuple[object, ...]]] = {
     "half_space": lambda random: powers(random, (0.25, 64), (2, 1e6), (1, 100), (0.1, 3)),
-    "half_space_for_waves": lambda random: powers(random, ELEMENTS, (1e-3, 1), (2, 1e6), FINER, (0.1, 3)),
-    "layer": lambda random: powers(random, ELEMENTS, SHARE, (1e-3, 1e6), (1e-3, 1e8)),
+    "half_space_for_waves": lambda random: powers(random, ELEMENTS, (1e-3, 1), (2, 1e6), FINER, (0.1, 3), FLAT, BESIDE),
+    "layer": lambda random: powers(random, ELEMENTS, SHARE, (1e-3, 1e6), (1e-3, 1e8), FLAT, BESIDE),
     "layer_for_waves": lambda random: powers(random, ELEMENTS, SHARE, (1e-3, 1e6), (1e-3, 1e8), FINER),
     "layer_under_rim": lambda random: powers(random, ELEMENTS, (1e-3, 1e6), (1e-3, 1e8)),
     "ring": lambda random: powers(random, ELEMENTS, SHARE, (1e-3, 1e6), (1.2, 1e6)),
