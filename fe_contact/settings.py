@@ -118,12 +118,15 @@ AnyNumerics = TypeVar("AnyNumerics", bound=Numerics)
 class WaveNumerics(Numerics):
     """``scheme`` is one of :mod:`fe_contact.dynamics.schemes`, of spectral radius ``rho`` for what no step follows;
     ``mass`` one of :mod:`fe_contact.dynamics.mass`; ``finer``: times as many elements at the surface as the body has;
-    the rest as in Numerics.
+    ``echoes``: how often in the contact time a wave comes back that steps follow; ``swing``: share of the peak force by
+    which those that they do not follow may swing it; the rest as in Numerics.
     """
 
     rho: Annotated[float, Key(Range(0.0, 1.0), "spectral radius for what no step follows, with waves")]
     mass: Annotated[str, Key(MemberOf(("fe_contact.dynamics.mass",)), "how mass stands on the nodes, with waves")]
     finer: float = 1.0
+    echoes: float = 0.0
+    swing: float = 0.0
 
 
 KEYS = keys_of(WaveNumerics)  # what a user may choose
@@ -132,6 +135,8 @@ SCALES = {  # what a plan estimates, by field
     "contact_time": "s, as it is expected",
     "peak_share": "time of the peak force over the contact time, as it is expected",
     "finer": "times as many elements at the surface as the body has, with waves",
+    "echoes": "how often a wave comes back in the contact time, if the steps follow that",
+    "swing": "of the peak force, by echoes that the steps do not follow",
 }
 RANGES = {name: (key.kind.low, key.kind.high) for name, key in KEYS.items() if isinstance(key.kind, Range)}
 

@@ -13,7 +13,8 @@ A march with waves as a curve: through fewer rows than steps, between which the 
 
 Points of a mesh that stays begin and end their contact one by one, and a dashpot in parallel differentiates that. The
 impulse hardly knows of it: a local cubic through the mean force since touch, as Savitzky and Golay smooth
-(doi:10.1021/ac60214a047), keeps what is smooth and knows of chatter even less.
+(doi:10.1021/ac60214a047), keeps what is smooth and knows of chatter even less. It would keep as little of the echoes of
+a thin layer, each of which is a pulse of the force: where they show, rows lie so close that they tell them.
 
 A march is dear, so that no more is refined than the measured budget says is missing.
 """
@@ -38,7 +39,7 @@ from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer, Growth, missing
 from fe_contact.budget.runs import AnyRuns
 from fe_contact.budget.several import Judged, Several
-from fe_contact.budget.variation import SAFETY, UNORDERED, Variation, factor
+from fe_contact.budget.variation import SAFETY, UNORDERED, Softening, Variation, factor
 from fe_contact.march.impacts import Followed, follow
 from fe_contact.progress import Count, Counted, Progress, uncounted
 from fe_contact.settings import Numerics, WaveNumerics
@@ -54,7 +55,10 @@ ORDER = {"mesh": 1, "penalty": 1, "time_step": 1, "far_field": 2}  # of converge
 LEAST_NODES = 24.0
 ROWS, AT = 60, 3e-3  # along a contact, and the tolerance for which they suffice: polynomials through six of them
 ROWS_ORDER = 5  # of the force between them
+ROWS_ECHO = 24  # along an echo, for any tolerance: half of them, which judge them, have to show it too
 TRUSTED = 2  # of that
+# Times the error that order one or two tells: the front of an echo begins as the root of time, which leaves order 1/2.
+FRONTS = (2.0 ** ORDER["time_step"] - 1.0) / (math.sqrt(2.0) - 1.0)
 DEGREE, REACH = 3, 2  # of the polynomial through all steps so many rows to either side
 ROUNDS = 3  # refinements before giving up
 GROWTH = {
@@ -153,16 +157,20 @@ def _judged(runs: WaveRuns, number: int, numerics: WaveNumerics) -> Judged:
     penalty, stiffer = other_setting(cheap, "penalty")
     coarse = min(cheap, mesh, key=attrgetter("elements_per_contact"))  # it is fine enough to tell of the far field
     far, farther = other_setting(coarse, "far_radius")
+    own, trust = curve_of(contact.march, contact.strike, numerics), FRONTS if numerics.echoes else 1.0
     changes: dict[str, Causes] = {
         "mesh": (
-            Moved.between(curve(cheap), curve(mesh), by_mesh),
+            Moved.between(curve(cheap), curve(mesh), trust * by_mesh),
             reading(contact.march, contact.strike, numerics),
         ),
         "penalty": (Moved.between(curve(cheap), curve(penalty), factor(ORDER["penalty"], stiffer)),),
-        "time_step": (EndMoved.between(curve(numerics), curve(half), factor(ORDER["time_step"], False)),),
+        "time_step": (
+            EndMoved.between(curve(numerics), curve(half), trust * factor(ORDER["time_step"], False)),
+            Swung(own, SAFETY * numerics.swing),
+        ),
         "far_field": (Moved.between(curve(coarse), curve(far), factor(ORDER["far_field"], farther)),),
     }
-    return curve_of(contact.march, contact.strike, numerics), changes
+    return own, changes
 
 
 class Moved(Variation):
@@ -198,22 +206,51 @@ class EndMoved(Moved):
         return errors | {"duration": errors["duration"] * UNORDERED / self.factor}
 
 
-def curve_of(march: March, strike: Strike, numerics: Numerics, share: float = 1.0) -> Curve:
+class Swung(Softening):
+    """What echoes that no step follows do to the force: they swing it about what all steps agree on.
+
+    Path and impulse average them. They may bring the peak to where the force, a half sine, is within twice the swing of
+    its largest.
+    """
+
+    @cached_property
+    def errors(self) -> dict[str, float]:
+        """Error of every quantity, in its unit."""
+        duration = self.curve.duration
+        return dict.fromkeys(super().errors, 0.0) | {
+            "peak_force": self.share * (self.curve.quantities["peak_force"] or 0.0),
+            "peak_time": 2.0 / math.pi * math.sqrt(self.share) * duration,
+            "duration": self.share * duration,
+            "history_l2": self.share,
+        }
+
+    @cached_property
+    def energies(self) -> dict[str, float]:
+        """None of any term, J."""
+        return dict.fromkeys(self.curve.energy, 0.0)
+
+
+def curve_of(march: March, strike: Strike, numerics: WaveNumerics, share: float = 1.0) -> Curve:
     """Rows lie closer at touch and separation, and as steps do where those differ; or a ``share`` of them."""
     curve = Curve.of(march, strike)
     rows = _rows(len(curve.x) - 1, numerics, share)
-    return replace(curve.through(rows), mean_force=_smoothed(curve.x, curve.mean_force, rows))
+    found = replace(curve.through(rows), mean_force=_smoothed(curve.x, curve.mean_force, rows))
+    if numerics.echoes == 0.0:
+        return found
+    highest = float(found.dense_time[found.dense_force.argmax()])  # one of many peaks, which no quartic goes through
+    return replace(found, peaked_at=highest)
 
 
-def reading(march: March, strike: Strike, numerics: Numerics) -> Variation:
+def reading(march: March, strike: Strike, numerics: WaveNumerics) -> Variation:
     """What these rows leave, as half of them tell."""
     fine, half = (curve_of(march, strike, numerics, share) for share in (1.0, 0.5))
-    return Variation(fine, half, SAFETY / (2**TRUSTED - 1))
+    return Variation(fine, half, (FRONTS if numerics.echoes else 1.0) * SAFETY / (2**TRUSTED - 1))
 
 
-def _rows(steps: int, numerics: Numerics, share: float) -> npt.NDArray[np.intp]:
+def _rows(steps: int, numerics: WaveNumerics, share: float) -> npt.NDArray[np.intp]:
     """Those to keep of the first and so many steps; both ends."""
-    count = share * ROWS * (AT / numerics.tolerance) ** (1 / ROWS_ORDER) * max(steps / numerics.steps, 1.0)
+    usual = max(ROWS * (AT / numerics.tolerance) ** (1 / ROWS_ORDER), ROWS_ECHO * numerics.echoes)
+    count = share * usual * max(steps / numerics.steps, 1.0)
     places = np.linspace(0.0, 1.0, math.ceil(count) + 1)
     return np.unique(np.round(steps * places**2 * (3 - 2 * places)).astype(np.intp))
 

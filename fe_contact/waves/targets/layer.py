@@ -18,7 +18,7 @@ from fe_contact.dynamics.body import Part
 from fe_contact.settings import RANGES, Given, WaveNumerics
 from fe_contact.targets.layer import matrix
 from fe_contact.waves.moving import BEYOND, SMALLEST, Moving, UnitBody, WaveSide
-from fe_contact.waves.plan import DEFAULTS, SPREAD, TRAVEL, contact_time, placed
+from fe_contact.waves.plan import DEFAULTS, SPREAD, TRAVEL, Echoes, contact_time, placed
 from fe_contact.waves.targets.base import WaveTarget, too_fast
 from lumped.errors import BadInput, Fault
 from lumped.laws.mdr import ImpactScales
@@ -30,6 +30,7 @@ SPARE = 1.2  # a resonance may press the striker deeper than statics
 # Width beyond the contact in thicknesses: at rest nothing is left of a load so far away, and in a contact of many
 # echoes no wave fast enough to come back is left either.
 NEAREST, FARTHEST = 8.0, 20.0
+PLACES = 400  # of a face, between which its height is told well enough for a swing
 LEAST = 4.0  # contact radii, of which half still holds the contact
 ROUGH: Given = {  # work: settings of a coarse body that only tells the contact's scales
     "tolerance": 1e-2,
@@ -46,11 +47,13 @@ ROUGH: Given = {  # work: settings of a coarse body that only tells the contact'
 def plan(scene: Scene, given: Given) -> Plan:
     """Choose what ``given`` (checked settings) leaves open; the impact without inertia places mesh and steps.
 
-    Raises NotReached where even that does not come to an end, BadInput for a contact beyond its load curve.
+    Raises NotReached where even that does not come to an end, BadInput for a contact beyond its load curve, and for
+    steps that pass over its echoes.
     """
     check_compressible(scene)
     size = scales(scene, WaveNumerics(**DEFAULTS, **ROUGH))
-    return placed(scene, given, size, _far_radius(scene, size), SPARE, _stiffness(scene, size))
+    stiff = _stiffness(scene, size)
+    return placed(scene, given, size, _far_radius(scene, size), SPARE, stiff, echoes=echoes(scene, size))
 
 
 def check(scene: Scene) -> None:
@@ -62,6 +65,39 @@ def check(scene: Scene) -> None:
         faults.append(Fault(scene.source, "striker.shape", reason))
     if faults:
         raise BadInput(faults)
+
+
+def echoes(scene: Scene, size: ImpactScales) -> Echoes:
+    """How often the fastest waves cross the layer and come back in the contact time, and how far they swing the force.
+
+    Until the first of them is back every place that the face has met is pressed with rho c v, and by its echo with
+    twice as much, whenever it comes. The met area A grows as a power p of the depth; of the sum of A(t - k echo) over k
+    Euler and Maclaurin's formula leaves 2 zeta(-p) A(echo) beside what is smooth: 1 under a flat end, 1/6 under a
+    sphere, hence about 6^(-p). A wave that goes so far in a period is damped by exp(-pi tan(loss)). What a place
+    narrower than the layer is thick sends down spreads on its way.
+    """
+    shape, material, target = scene.profile, scene.geometry.material, scene.target
+    assert isinstance(target, Layer)
+    density = material.density or 1.0
+    speed = math.sqrt(material.confined_modulus().glassy / density)
+    echo = 2.0 * target.thickness / speed
+    radii = np.linspace(0.0, SPARE * size.contact_radius, PLACES)
+    areas = 2.0 * radii * shape.total if shape.plane else math.pi * radii**2
+    depths = scene.velocity * echo * np.array([1.0, 2.0])
+    met = float(np.interp(depths[0], shape.height(radii), radii))
+    first, second = np.interp(depths, shape.height(radii), areas).tolist()
+    left = 6.0 ** -math.log2(max(second / first, 1.0)) if first > 0.0 else 0.0
+    left *= math.exp(-math.pi * _damping(material.young, 2.0 * math.pi / echo))
+    left *= min(met / target.thickness, 1.0) ** (2 if shape.plane else 3)
+    return Echoes(contact_time(scene, size) / echo, density * speed * scene.velocity * first / size.peak_force * left)
+
+
+def _damping(modulus: Relaxation, omega: float) -> float:
+    """Loss over storage modulus of a vibration of so many radians a second."""
+    turned = omega * np.asarray(modulus.times)
+    branches = np.asarray(modulus.moduli) * turned / (1.0 + turned**2)
+    storage = modulus.equilibrium + float((branches * turned).sum())
+    return (float(branches.sum()) + omega * modulus.viscosity) / storage
 
 
 def _stiffness(scene: Scene, size: ImpactScales) -> float:
