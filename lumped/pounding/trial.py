@@ -199,6 +199,7 @@ class FrameTrial:
         """
         values, place = event.value(step), event.first(step) or 0
         low, high, length = _bracket(step, values, place)
+        length = max(length, self._precise)  # two gaps of the same storeys turn at once
         nodes, guess = self._ending(event, length), step.gain
         if nodes.mirrored != step.nodes.mirrored:
             guess = np.outer(step.force[:, place], nodes.pace)

@@ -408,6 +408,30 @@ def random_case(rng: np.random.Generator) -> tuple[PoundingFrames, str, GroundMo
     return PoundingFrames(left, right, gaps), str(rng.choice(list(LAWS))), grounds[int(rng.integers(3))]
 
 
+@pytest.mark.parametrize("seed", [3, 11, 17])
+def test_two_gaps_of_the_same_storeys_turn_at_once(seed: int) -> None:
+    """A storey and a wall that meet at two places: both contacts turn where an independent integration does."""
+    rng, k, chi = np.random.default_rng(seed), 1e3, 0.3
+    speed, ahead = float(rng.uniform(0.5, 2.0)), float(rng.uniform(0.001, 0.05))
+    frames = PoundingFrames(
+        ShearFrame((1.0,), (1.0,), velocity=(speed,)), None, {"a": Gap(1, None, 0.1), "b": Gap(1, None, 0.1 + ahead)}
+    )
+    law = law_of("hunt_crossley", 1.0, None, k=k, alpha=1.5, chi=chi)
+    found = simulate(frames, [law, law], end_time=20.0, tolerance=1e-8).motion
+
+    def moving(_: float, state: Array) -> list[float]:
+        depths = np.maximum(state[0] - np.array([0.1, 0.1 + ahead]), 0.0)
+        return [state[1], -state[0] - float((k * depths**1.5).sum()) * (1.0 + chi * state[1])]
+
+    def turning(_: float, state: Array) -> float:
+        return float(state[1])
+
+    turning.terminal = True  # type: ignore[attr-defined]
+    solved = solve_ivp(moving, (0.0, 0.55), (0.0, speed), events=turning, rtol=1e-10, atol=1e-12, max_step=1e-2)
+    first = found.displacement[found.time < 0.55].max()
+    assert first == pytest.approx(solved.y[0, -1], rel=1e-8)
+
+
 @pytest.mark.tenth
 def test_energy_balances_in_random_frames(campaign_size: Callable[..., int]) -> None:
     rng, touched = np.random.default_rng(16), 0
