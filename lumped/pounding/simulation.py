@@ -10,6 +10,7 @@ from dataclasses import asdict, dataclass, field
 
 import numpy as np
 from numpy.polynomial.legendre import legder, legroots, legval
+from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault
 from lumped.laws._force_law import ForceLaw
@@ -51,15 +52,21 @@ def simulate(
 
 @dataclass
 class Peaks:
-    """The largest sizes of some numbers, and the polynomials over the place in the steps where they were."""
+    """The largest sizes of some numbers, and the polynomials over the place in the steps where they were.
+
+    `after`: those of the next steps, where the largest was at the end of a step: it may still rise from there on;
+    `open`: of which the next step is still to come.
+    """
 
     size: Array
     series: Array
+    after: Array
+    open: NDArray[np.bool_]
 
     @classmethod
     def of(cls, count: int) -> Peaks:
         """Nothing yet."""
-        return cls(np.zeros(count), np.zeros((STAGES, count)))
+        return cls(np.zeros(count), *np.zeros((2, STAGES, count)), np.zeros(count, dtype=bool))
 
     def see(self, values: Array, nodes: Nodes) -> Array:
         """Values at the points of one step or more, (..., s, n); which are larger than any before, (n,)."""
@@ -67,24 +74,39 @@ class Peaks:
         sizes = np.abs(steps).max(axis=1)
         size = sizes.max(axis=0)
         larger = size > self.size
+        if self.open.any():
+            self.after[:, self.open] = nodes.series @ steps[0][:, self.open]
+            self.open = np.zeros_like(self.open)
         if larger.any():
+            which, columns = sizes.argmax(axis=0), np.arange(size.size)
+            own, following = (steps[np.minimum(which + more, steps.shape[0] - 1), :, columns].T for more in (0, 1))
+            at_end = larger & (np.abs(own).argmax(axis=0) == STAGES - 1)
+            self.open = at_end & (which + 1 == steps.shape[0])
             self.size = np.where(larger, size, self.size)
-            self.series[:, larger] = nodes.series @ steps[sizes.argmax(axis=0), :, np.arange(size.size)].T[:, larger]
+            self.series[:, larger] = nodes.series @ own[:, larger]
+            self.after[:, larger] = nodes.series @ np.where(at_end & ~self.open, following, 0.0)[:, larger]
         return np.asarray(larger)
 
     def heights(self) -> Array:
-        """Each at the top of its polynomial."""
-        return np.array([self.top(i)[1] for i in range(self.size.size)])
+        """Each at the top of its polynomials."""
+        return np.array([self.top(i)[2] for i in range(self.size.size)])
 
-    def top(self, i: int) -> tuple[float, float]:
-        """Place in its step, and height."""
-        series = self.series[:, i]
-        turns = legroots(legder(series)) if series[1:].any() else np.zeros(0)
-        inside = np.real(turns[(np.imag(turns) == 0.0) & (np.abs(turns) < 1.0)])
-        places = np.concatenate([inside, [-1.0, 1.0]])
-        heights = np.abs(legval(places, series))
-        best = int(heights.argmax())
-        return 0.5 * (1.0 + float(places[best])), max(float(heights[best]), float(self.size[i]))
+    def top(self, i: int) -> tuple[bool, float, float]:
+        """Whether it is in the next step, the place in its step, and the height."""
+        own, after = (_top(series[:, i]) for series in (self.series, self.after))
+        later = after[1] > max(own[1], float(self.size[i]))
+        place, height = after if later else own
+        return later, place, max(height, float(self.size[i]))
+
+
+def _top(series: Array) -> tuple[float, float]:
+    """Place and size of the largest that a polynomial over the place has within its step."""
+    turns = legroots(legder(series)) if series[1:].any() else np.zeros(0)
+    inside = np.real(turns[(np.imag(turns) == 0.0) & (np.abs(turns) < 1.0)])
+    places = np.concatenate([inside, [-1.0, 1.0]])
+    heights = np.abs(legval(places, series))
+    best = int(heights.argmax())
+    return 0.5 * (1.0 + float(places[best])), float(heights[best])
 
 
 @dataclass
@@ -96,17 +118,20 @@ class OpenContact:
     impulse: float = 0.0
     peak: Peaks = field(default_factory=lambda: Peaks.of(1))
     step: tuple[float, FrameStep] | None = None
+    after: tuple[float, FrameStep] | None = None
 
     def see(self, time: float, step: FrameStep, gap: int) -> None:
         """One step more, from `time`, s, on."""
         self.impulse += step.length * float(step.nodes.weights @ step.gain[gap])
+        if self.peak.open[0]:
+            self.after = time, step
         if self.peak.see(step.force[gap][:, None], step.nodes)[0] or self.step is None:
             self.step = time, step
 
     def contact(self, gap: str, end: float | None, rate: float) -> FrameContact:
         """As it is known when it ends; at the end of the motion None."""
-        place, height = self.peak.top(0)
-        time, step = self.step or (self.start, None)
+        later, place, height = self.peak.top(0)
+        time, step = (self.after if later else self.step) or (self.start, None)
         share = 0.0 if step is None else float(np.interp(place, step.nodes.places, step.nodes.points, left=0.0))
         parted = None if end is None or self.closing <= 0.0 else -rate / self.closing
         peak_time = time + share * (0.0 if step is None else step.length)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -406,6 +407,16 @@ def random_case(rng: np.random.Generator) -> tuple[PoundingFrames, str, GroundMo
     }
     grounds = [STILL, shaking(int(rng.integers(1000)), 2.0), Sine(3.0, float(rng.uniform(0.5, 4.0)))]
     return PoundingFrames(left, right, gaps), str(rng.choice(list(LAWS))), grounds[int(rng.integers(3))]
+
+
+@pytest.mark.parametrize("phase", np.linspace(0.4, 3.1, 60))
+def test_a_peak_just_after_the_end_of_a_step_is_found(phase: float) -> None:
+    """Of free vibration, in closed form: where in a row its peaks lie does not matter."""
+    omega = 7.0
+    start = {"displacement": (-math.cos(phase),), "velocity": (omega * math.sin(phase),)}
+    frames = PoundingFrames(ShearFrame((2.0,), (2.0 * omega**2,), **start))
+    (peaks,) = simulate(frames, end_time=0.9 * math.pi / omega).peaks
+    assert peaks.displacement == pytest.approx(1.0, rel=1e-8)
 
 
 @pytest.mark.parametrize("seed", [3, 11, 17])
