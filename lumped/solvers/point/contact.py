@@ -150,10 +150,14 @@ FORCE_LEFT = Event(
 
 @dataclass(frozen=True)
 class PointMotion:
-    """Contacts in order; between two of them depth is that of free flight. `gravity`: m/s2 towards the target."""
+    """Contacts in order; between two of them depth is that of free flight. `gravity`: m/s2 towards the target.
+
+    `weight`: N, what a striker at rest is borne with.
+    """
 
     contacts: tuple[Contact, ...]
     gravity: float
+    weight: float = 0.0
 
     @property
     def end(self) -> End:
@@ -181,4 +185,4 @@ def motion(law: PointLaw, bodies: Bodies, exit_rule: str, impacts: int, until: f
         time, state = contacts[-1].end_time + again[0], again[1]
         if abs(state.rate) < FAINTEST * bodies.velocity:
             break
-    return PointMotion(tuple(contacts), bodies.gravity)
+    return PointMotion(tuple(contacts), bodies.gravity, bodies.mass * bodies.gravity)

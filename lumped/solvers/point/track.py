@@ -122,7 +122,8 @@ class PointTrack:
         elapsed = times[after] - contact.end_time
         last, gravity = contact.last, self.motion.gravity
         if contact.end is End.REST:
-            found[:, after] = np.array([[last.depth], [0.0], [contact.phases[-1].last.force[-1]]])
+            # what a damper still adds where the striker counts as at rest dies away
+            found[:, after] = np.array([[last.depth], [0.0], [self.motion.weight]])
             return
         found[0, after] = last.depth + elapsed * (last.rate + 0.5 * gravity * elapsed)
         found[1, after] = last.rate + gravity * elapsed
