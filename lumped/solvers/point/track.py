@@ -26,6 +26,7 @@ EARLY = 1e-6
 CLOSER = (0.5, 0.1, 0.03)
 FIVE = np.linspace(0.0, 1.0, 5)  # places through which the quartic is laid
 QUARTIC = np.linalg.inv(np.vander(FIVE))
+AT_END = 1e-9  # rounding: of the time since touch, by which a flat peak is known to lie before the end of a step
 NEWTONS = 8  # work: steps to the top of a quartic
 
 
@@ -192,13 +193,18 @@ def peak_of(track: PointTrack, one: Contact) -> tuple[float, float]:
     steps = [(phase, step) for phase in one.phases for step in phase.steps]
     ends = one.start_time + np.cumsum([step.length for _, step in steps])
     i = int(np.argmax([step.force.max() for _, step in steps]))
-    force = steps[i][1].force
-    rising = force.argmax() == force.size - 1 and steps[i][1].last_slope(force) > 0.0
-    k = i + 1 if rising and i + 1 < len(steps) else i
-    phase, step = steps[k]
     touch = float(track.pressed(one.phases[0], np.array([one.start_time]))[2, 0])
-    places = ends[k] - step.length * (1.0 - np.append(0.0, step.nodes.points))
-    return max((one.start_time, touch), _vertex(track, phase, places), key=lambda peak: peak[1])
+
+    def highest(k: int) -> tuple[float, float]:
+        phase, step = steps[k]
+        return _vertex(track, phase, ends[k] - step.length * (1.0 - np.append(0.0, step.nodes.points)))
+
+    top, last = highest(i), steps[i][1]
+    # A faint damper lets the force turn just before the motion: only what still rises at an end is higher after it.
+    at_end = ends[i] - top[0] <= AT_END * (ends[i] - one.start_time) and last.force.argmax() == last.force.size - 1
+    if at_end and last.last_slope(last.force) > 0.0 and i + 1 < len(steps):
+        top = highest(i + 1)
+    return max((one.start_time, touch), top, key=lambda peak: peak[1])
 
 
 def _vertex(track: PointTrack, phase: PointPhase, places: Array) -> tuple[float, float]:
