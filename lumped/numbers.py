@@ -18,6 +18,8 @@ JUMP = 10.0  # safety: over the slopes beside it, that of an interval in which n
 EQUAL = 1e-12  # of all the rows: two as close as that are one, and no slope lies between them but rounding's
 # Steps of false position and of bisection, more than either takes; two places as near, relatively, are one.
 ROOT_STEPS, BISECTIONS, ROUNDING = 100, 200, 4e-16
+# Rounding: of a time that is a sum of hundreds of steps, and of a flight after a rate with as many, relative to it.
+ROUNDED_TIME = 3e-14
 
 
 def local(x: Array, y: Array, at: Array, points: int = POINTS) -> Array:
@@ -92,6 +94,17 @@ def highest(curve: Callable[[Array], Array], places: Array) -> tuple[float, floa
     heights = fit(candidates)
     best = int(np.argmax(heights))
     return float(0.5 * (low + high) + 0.5 * (high - low) * candidates[best]), float(heights[best])
+
+
+def rounded_by_time(times: Array, force: Array) -> Array:
+    """What the rounding of times, ascending, (n,), shifts a force by at them, N: a steep one late by much.
+
+    By no more than the force changes between two rows that rounding cannot tell apart.
+    """
+    rounded = ROUNDED_TIME * times[1:]
+    steps = np.maximum(np.diff(times), rounded)
+    shifted = np.abs(np.diff(force)) * np.divide(rounded, steps, out=np.zeros_like(steps), where=steps > 0.0)
+    return np.asarray(np.maximum(np.append(shifted, 0.0), np.append(0.0, shifted)))
 
 
 def running_integral(values: Array, places: Array) -> Array:

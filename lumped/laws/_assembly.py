@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from lumped.numbers import Array, Clock
+from lumped.numbers import Array, Clock, rounded_by_time
 from lumped.result.history import AT_REST, End, History, densified
 from lumped.result.model_ledger import Ledger, Peak
 from lumped.result.result import RULED_RELATIVE, UNITS, Quantity, Result, provenance, unmet
@@ -23,6 +23,7 @@ if TYPE_CHECKING:  # the row of springs needs numpy alone
 
 # Rounding of the sums behind a quantity, relative to it.
 ROUNDING = 1e-12
+LAST_DIGIT = 1e-15  # rounding: of a depth, and of what an impulse is the difference of, relative to it
 # A peak is flat: its time is known to the root of what its height is known to.
 ROUNDING_OF = {"peak_time": 1e-8}
 # Where two integrations are compared for the time of a peak: how the force bends there is told by so many places up to
@@ -34,6 +35,7 @@ _EVEN = (AROUND - 0.5) ** 2 - np.mean((AROUND - 0.5) ** 2)
 BENDS = _EVEN / (_EVEN @ _EVEN)
 EQUAL = 1e-9  # rounding: peaks of several contacts that differ by less, relatively, are one height
 FINEST_ROWS = 1e-9  # work: a history is made no denser than this share of the peak force asks for
+SHARE_OF_CONTACT = 1e-3  # safety: in what is shorter than this share of a contact nothing but a jump is left out
 # Two integrations may agree in one quantity by chance: its bar is at least this share of the history's (L2).
 LEAST_SHARE = 0.1
 
@@ -55,6 +57,7 @@ class Answer:
     `columns` tells it at any time, `times` are its own rows; `values` are the quantities (None where undefined),
     without history_l2. `until`: the last time to follow, s; None: the scene's. `contacts`: the several contacts of one
     motion. `mass`: what moves, kg, by which the impulse goes with the velocity; 0 where waves carry some of it.
+    `stiff`: the largest stiffness times its depth, N; `momentum`: of what the impulse is the difference, N s.
     """
 
     times: Array
@@ -66,6 +69,8 @@ class Answer:
     until: float | None = None
     contacts: tuple[Mapping[str, float | None], ...] = ()
     mass: float = 0.0
+    stiff: float = 0.0
+    momentum: float = 0.0
 
     @property
     def rounding(self) -> float:
@@ -131,7 +136,8 @@ def bars(fine: Answer, coarse: Answer, safety: float) -> tuple[dict[str, Quantit
     missed = force - coarse.columns.force(places)
     worst, l2 = _largest_and_norm(times, force[: times.size], missed[: times.size])
     passed = _impulse_missed(fine, coarse, times)
-    quantities = {"history_l2": Quantity(0.0, safety * l2 + fine.rounding, "1")}
+    steep, late = _largest_and_norm(times, force[: times.size], rounded_by_time(times, force[: times.size]))
+    quantities = {"history_l2": Quantity(0.0, safety * l2 + max(fine.rounding, late), "1")}
     for name, value in fine.values.items():
         other, error = coarse.values[name], None
         if value is not None:
@@ -139,19 +145,26 @@ def bars(fine: Answer, coarse: Answer, safety: float) -> tuple[dict[str, Quantit
             least = LEAST_SHARE * l2 + fine.rounding + ROUNDING_OF.get(name, 0.0)
             error = max(abs(value - (other or 0.0)), least * scale)
             if name == "impulse":
-                error = max(error, passed)
+                error = max(error, passed, LAST_DIGIT * fine.momentum)
             if name == "peak_time":
                 error = near.shift(force[times.size :], missed[times.size :], error)
             error *= safety
         quantities[name] = Quantity(value, error, UNITS[name])
     peak = fine.values["peak_force"] or 0.0
-    return {name: quantities[name] for name in UNITS}, safety * (worst + fine.rounding * peak)
+    return {name: quantities[name] for name in UNITS}, safety * (
+        worst + max(fine.rounding * peak, steep, LAST_DIGIT * fine.stiff)
+    )
 
 
 def _times_of_both(fine: Answer, coarse: Answer) -> Array:
-    """Their own rows; where the force jumps, at an end, the two know it to rounding: of times as close the first."""
+    """Their own rows; where the force jumps, at an end, the two know it to rounding: of times as close the first.
+
+    After long flights rounding of time is no small share of a contact: there nothing is left out.
+    """
     t = np.sort(np.concatenate([fine.times, coarse.times]))
-    return np.asarray(t[np.append(True, np.diff(t) > ROUNDING * t[-1])])
+    lasted = (one["duration"] or math.inf for one in fine.contacts)
+    close = min(ROUNDING * float(t[-1]), SHARE_OF_CONTACT * min(lasted, default=math.inf))
+    return np.asarray(t[np.append(True, np.diff(t) > close)])
 
 
 def _impulse_missed(fine: Answer, coarse: Answer, times: Array) -> float:

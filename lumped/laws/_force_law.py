@@ -19,7 +19,7 @@ from lumped.result.history import End
 from lumped.result.result import UNITS, Quantity, Result, meets
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
-from lumped.solvers.point.bodies import Bodies, PointLaw, State
+from lumped.solvers.point.bodies import TINY, Bodies, PointLaw, State
 from lumped.solvers.point.contact import PointMotion, motion
 from lumped.solvers.point.half_widths import half_widths
 from lumped.solvers.point.phase import PointPhase
@@ -192,6 +192,18 @@ def _answer(law: ForceLaw, scene: Scene, track: PointTrack, outcomes: Sequence[O
         until,
         tuple(outcome._asdict() for outcome in outcomes) if scene.motion.impacts > 1 else (),
         scene.reduced_mass,
+        0.0 if law.remembers else _stiffest(law, moved),
+        scene.reduced_mass * (scene.velocity + abs(last.last.rate) + abs(scene.gravity) * last.end_time),
+    )
+
+
+def _stiffest(law: ForceLaw, moved: PointMotion) -> float:
+    """The largest stiffness times its depth, N: by so much a digit of the depth is more than one of the force."""
+    steps = [(phase.stage, step) for one in moved.contacts for phase in one.phases for step in phase.steps]
+    return max(
+        float(np.abs(law.tangents(pressed, step.rate, stage)[0] * pressed).max())
+        for stage, step in steps
+        if (pressed := np.maximum(step.depth, TINY)).size
     )
 
 

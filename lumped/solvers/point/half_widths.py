@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 
-from lumped.numbers import Array
+from lumped.numbers import Array, rounded_by_time
 from lumped.result.history import AT_REST, End
 from lumped.solvers.point.bodies import TINY, Bodies, PointLaw, Stage
 from lumped.solvers.point.contact import Contact, following, leaving
@@ -32,6 +32,7 @@ SAFETY = 3.0
 UNSURE = 0.2  # safety: share of the largest lack that is added between a step's ends, where the estimate may be wrong
 # Rounding of depths and rates along a march, relative to the largest; of times; of forces; of the time of a flat peak.
 ROUNDING, ROUNDING_OF_TIME, ROUNDING_OF_FORCE, ROUNDING_OF_PEAK = 1e-14, 3e-14, 1e-13, 3e-9
+ROUNDING_OF_DEPTH = 1e-15  # of the depth at which a law is asked
 NODES = radau(12)
 
 
@@ -61,8 +62,9 @@ def half_widths(track: PointTrack, bodies: Bodies, exit_rule: str, outcome: Outc
     restitution = (rate + rounding * fastest) / bodies.velocity
     passed = bodies.mass * (bodies.velocity * restitution + abs(bodies.gravity) * duration)
     return HalfWidths(
-        force=SAFETY * max(float(np.abs(part.lacking_force).max()) for part in found) + of_force * highest,
-        history_l2=SAFETY * _l2(found) + of_force,
+        force=SAFETY * max(float(np.abs(part.lacking_force).max()) for part in found)
+        + max(of_force * highest, *(float(part.rounded_force.max()) for part in found)),
+        history_l2=SAFETY * _l2(found) + max(of_force, _norm(found, [part.rounded_force for part in found])),
         peak_force=SAFETY * peak + of_force * outcome.peak_force,
         peak_time=SAFETY * peak_time + ROUNDING_OF_PEAK * max(outcome.peak_time, reach),
         peak_depth=SAFETY * _deepest(found) + rounding * one.deepest,
@@ -78,7 +80,7 @@ def _end(track: PointTrack, bodies: Bodies, exit_rule: str, last: Deviation) -> 
     A weight may press far deeper than the velocity at touch would, and what is rounded there is carried to the end.
     """
     one = track.motion.contacts[0]
-    lacking = [float(part[-1, -1]) for part in last[5:]]
+    lacking = [float(part[-1, -1]) for part in last[5:8]]
     rate = lacking[RATE]
     if one.end is not End.SEPARATED:
         return 0.0, SAFETY * abs(rate)
@@ -126,7 +128,12 @@ def _peak(found: list[Deviation], time: float) -> tuple[float, float, float]:
 
 def _l2(found: list[Deviation]) -> float:
     """The norm of what the force lacks over that of the force."""
-    lacking = sum(float((part.weights * part.lacking_force**2).sum()) for part in found)
+    return _norm(found, [part.lacking_force for part in found])
+
+
+def _norm(found: list[Deviation], missed: list[Array]) -> float:
+    """The norm of what is missed of the force over that of the force."""
+    lacking = sum(float((part.weights * one**2).sum()) for part, one in zip(found, missed, strict=True))
     whole = sum(float((part.weights * part.force**2).sum()) for part in found)
     return math.sqrt(lacking / whole) if whole else 0.0
 
@@ -145,7 +152,7 @@ def _rises(count: int) -> Array:
 
 class Deviation(NamedTuple):
     """One phase at the nodes of its n steps, all of shape (n, S): times and weights in time, s, depth, rate and force
-    of the march, and what each of the three lacks, SI.
+    of the march, and what each of the three lacks, SI; and by how much rounding of times and depths shifts the force.
     """
 
     times: Array
@@ -156,6 +163,7 @@ class Deviation(NamedTuple):
     lacking_depth: Array
     lacking_rate: Array
     lacking_force: Array
+    rounded_force: Array
 
 
 def deviations(track: PointTrack, bodies: Bodies, one: Contact) -> list[Deviation]:
@@ -199,7 +207,10 @@ def _of(
     lacking_depth, lacking_rate = _in_a_row(depths, rates, start)
     lacking_force = stiffness * lacking_depth + damping * lacking_rate + moved
     times = row.starts[:, None] + row.lengths[:, None] * share
-    return Deviation(times, passing * NODES.weights, depth, rate, force, lacking_depth, lacking_rate, lacking_force)
+    late = rounded_by_time(times.ravel(), force.ravel()).reshape(times.shape)
+    rounded = np.maximum(late, ROUNDING_OF_DEPTH * np.abs(stiffness) * depth)
+    weights = passing * NODES.weights
+    return Deviation(times, weights, depth, rate, force, lacking_depth, lacking_rate, lacking_force, rounded)
 
 
 def _in_a_row(depths: Array, rates: Array, start: tuple[float, float]) -> tuple[Array, Array]:
