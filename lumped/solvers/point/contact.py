@@ -69,7 +69,8 @@ def contact(
     """
     scale = law.time_scale(bodies)
     stage = Stage(start.rate > 0.0, start.depth, abs(start.rate) or bodies.velocity, start.depth)
-    length = tolerance ** (law.grading(stage) / STAGES) * scale
+    # An end that cuts the contact early is no first step of its own: two marches would take the same one and agree.
+    length = tolerance ** (law.grading(stage) / STAGES) * min(scale, until - time)
     corners = law.corners(stage)
     phases: list[PointPhase] = []
     for _ in range(MOST_TURNS):
