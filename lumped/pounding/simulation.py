@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 
 import numpy as np
-from numpy.polynomial.legendre import legder, legroots, legval
+from numpy.polynomial.legendre import legder, legroots, legval, legvander
 from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault
@@ -26,6 +26,9 @@ from lumped.solvers.point.bodies import TINY, State
 from lumped.solvers.radau import NODES, STAGES, Nodes
 
 TOGETHER = 64  # work: steps that are accounted for at once
+# Safety: shares of a peak by which the points of its step, and AMONG them these places, may all be lower.
+POINTS_APART, AMONG_APART = 0.1, 5e-3
+AMONG = legvander(np.linspace(-1.0, 1.0, 33), STAGES - 1)
 
 
 def simulate(
@@ -54,49 +57,35 @@ def simulate(
 class Peaks:
     """The largest sizes of some numbers, and the polynomials over the place in the steps where they were.
 
-    `after`: those of the next steps, where the largest was at the end of a step: it may still rise from there on;
-    `open`: of which the next step is still to come.
+    Of two peaks nearly as high the higher one may be lower at the points of its step: all such steps are looked into.
     """
 
     size: Array
     series: Array
-    after: Array
-    open: NDArray[np.bool_]
 
     @classmethod
     def of(cls, count: int) -> Peaks:
         """Nothing yet."""
-        return cls(np.zeros(count), *np.zeros((2, STAGES, count)), np.zeros(count, dtype=bool))
+        return cls(np.zeros(count), np.zeros((STAGES, count)))
 
-    def see(self, values: Array, nodes: Nodes) -> Array:
-        """Values at the points of one step or more, (..., s, n); which are larger than any before, (n,)."""
+    def see(self, values: Array, nodes: Nodes) -> NDArray[np.bool_]:
+        """Values at the points of one step or more, (..., s, n); which rise higher than any before, (n,)."""
         steps = values.reshape(-1, *values.shape[-2:])
-        sizes = np.abs(steps).max(axis=1)
-        size = sizes.max(axis=0)
-        larger = size > self.size
-        if self.open.any():
-            self.after[:, self.open] = nodes.series @ steps[0][:, self.open]
-            self.open = np.zeros_like(self.open)
-        if larger.any():
-            which, columns = sizes.argmax(axis=0), np.arange(size.size)
-            own, following = (steps[np.minimum(which + more, steps.shape[0] - 1), :, columns].T for more in (0, 1))
-            at_end = larger & (np.abs(own).argmax(axis=0) == STAGES - 1)
-            self.open = at_end & (which + 1 == steps.shape[0])
-            self.size = np.where(larger, size, self.size)
-            self.series[:, larger] = nodes.series @ own[:, larger]
-            self.after[:, larger] = nodes.series @ np.where(at_end & ~self.open, following, 0.0)[:, larger]
-        return np.asarray(larger)
+        sizes, before = np.abs(steps).max(axis=1), self.size.copy()
+        which, columns = np.nonzero(sizes > (1.0 - POINTS_APART) * np.maximum(sizes.max(axis=0), self.size))
+        series = nodes.series @ steps[which, :, columns].T
+        heights = np.abs(AMONG @ series).max(axis=0)
+        for k in np.argsort(-heights).tolist():
+            i = columns[k]
+            if heights[k] > (1.0 - AMONG_APART) * self.size[i]:
+                height = _top(series[:, k])[1]
+                if height > self.size[i]:
+                    self.size[i], self.series[:, i] = height, series[:, k]
+        return np.asarray(self.size > before)
 
-    def heights(self) -> Array:
-        """Each at the top of its polynomials."""
-        return np.array([self.top(i)[2] for i in range(self.size.size)])
-
-    def top(self, i: int) -> tuple[bool, float, float]:
-        """Whether it is in the next step, the place in its step, and the height."""
-        own, after = (_top(series[:, i]) for series in (self.series, self.after))
-        later = after[1] > max(own[1], float(self.size[i]))
-        place, height = after if later else own
-        return later, place, max(height, float(self.size[i]))
+    def top(self, i: int) -> tuple[float, float]:
+        """Place in its step, and height."""
+        return _top(self.series[:, i])[0], float(self.size[i])
 
 
 def _top(series: Array) -> tuple[float, float]:
@@ -118,20 +107,17 @@ class OpenContact:
     impulse: float = 0.0
     peak: Peaks = field(default_factory=lambda: Peaks.of(1))
     step: tuple[float, FrameStep] | None = None
-    after: tuple[float, FrameStep] | None = None
 
     def see(self, time: float, step: FrameStep, gap: int) -> None:
         """One step more, from `time`, s, on."""
         self.impulse += step.length * float(step.nodes.weights @ step.gain[gap])
-        if self.peak.open[0]:
-            self.after = time, step
         if self.peak.see(step.force[gap][:, None], step.nodes)[0] or self.step is None:
             self.step = time, step
 
     def contact(self, gap: str, end: float | None, rate: float) -> FrameContact:
         """As it is known when it ends; at the end of the motion None."""
-        later, place, height = self.peak.top(0)
-        time, step = (self.after if later else self.step) or (self.start, None)
+        place, height = self.peak.top(0)
+        time, step = self.step or (self.start, None)
         share = 0.0 if step is None else float(np.interp(place, step.nodes.places, step.nodes.points, left=0.0))
         parted = None if end is None or self.closing <= 0.0 else -rate / self.closing
         peak_time = time + share * (0.0 if step is None else step.length)
@@ -247,7 +233,7 @@ class Account:
         return FramesResult(frames, motion, contacts, self._peaks(), self._energy(), self.steps, self.pressed_steps)
 
     def _peaks(self) -> tuple[StoreyPeaks, ...]:
-        displacement, drift, acceleration, speed = self.peaks.heights().reshape(4, -1)
+        displacement, drift, acceleration, speed = self.peaks.size.reshape(4, -1)
         strain, kinetic = 0.5 * self.frames.columns * drift**2, 0.5 * self.frames.mass * speed**2
         columns = np.array([displacement, drift, acceleration, strain, kinetic]).T.tolist()
         return tuple(StoreyPeaks(*column) for column in columns)

@@ -19,6 +19,9 @@ NO_CONTACT = "no contact"  # the variant whose structures pass through each othe
 COARSE, FINE = 1e-6, 1e-8  # step tolerances of the two marches
 SAFETY = 2.0  # safety: two marches may agree by chance
 ROUNDING = 1e-12  # rounding: of a sum over thousands of steps, relative
+# Of the polynomial through the points of a row, which both marches share: a sixth of the shortest period at most.
+BETWEEN_POINTS = 1e-9
+POLYNOMIALS = ("peak_drift", "peak_displacement", "peak_acceleration")
 # What a converged motion may err by: a peak force, relative; the energy, of all that came in.
 MOST_ERROR, MOST_RESIDUAL = 1e-4, 1e-8
 MOST_OF_WAVES = 5e-2  # of the peak force, where slabs have waves: modes meet their fronts slowly
@@ -122,7 +125,7 @@ def pounding(
     others = [marched(number).measures() for number in range(1, len(ways))]
     errors = {
         name: SAFETY * max(abs(value - others[0][name]), 0.5 * abs(others[0][name] - others[-1][name]))
-        + ROUNDING * abs(value)
+        + (BETWEEN_POINTS if name in POLYNOMIALS else ROUNDING) * abs(value)
         for name, value in fine.measures().items()
     }
     errors["contacts"] = SAFETY * abs(len(fine.contacts) - others[0]["contacts"])

@@ -71,7 +71,7 @@ class OpenPtmdContact:
 
     def contact(self, side: int, end: float | None) -> PtmdContact:
         """As it is known when it ends."""
-        force, depth = self.peaks.heights().tolist()
+        force, depth = self.peaks.size.tolist()
         return PtmdContact(side, self.start, end, max(force, self.first), depth)
 
 
@@ -276,7 +276,7 @@ class PtmdTrack:
         later = [contact for contact in found if contact.start > 0.0 and contact.end is not None]
         return Measures(
             window=span,
-            max_acceleration=max(float(self.acceleration.heights()[0]), float(np.abs(a).max())),
+            max_acceleration=max(float(self.acceleration.size[0]), float(np.abs(a).max())),
             rms_acceleration=float(np.sqrt(share @ a**2)),
             rms_displacement=float(np.sqrt(share @ states[:, 0] ** 2)),
             t50=self._last_above(0.5 * release) if release else None,

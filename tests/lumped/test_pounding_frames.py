@@ -419,6 +419,16 @@ def test_a_peak_just_after_the_end_of_a_step_is_found(phase: float) -> None:
     assert peaks.displacement == pytest.approx(1.0, rel=1e-8)
 
 
+@pytest.mark.parametrize("ratio", [1e-6, 1e-5, 1e-4, 1e-3])
+def test_the_highest_of_many_peaks_nearly_as_high_is_the_peak(ratio: float) -> None:
+    """Of a vibration that hardly dies away the first one, in closed form, wherever the points of the rows lie."""
+    omega = 7.0
+    frames = PoundingFrames(ShearFrame((2.0,), (2.0 * omega**2,), damping_ratio=ratio, velocity=(omega,)))
+    (peaks,) = simulate(frames, end_time=20.0).peaks
+    first = math.exp(-ratio * math.acos(ratio) / math.sqrt(1.0 - ratio**2))
+    assert peaks.displacement == pytest.approx(first, rel=1e-9)
+
+
 @pytest.mark.parametrize("seed", [3, 11, 17])
 def test_two_gaps_of_the_same_storeys_turn_at_once(seed: int) -> None:
     """A storey and a wall that meet at two places: both contacts turn where an independent integration does."""
