@@ -97,14 +97,14 @@ def highest(curve: Callable[[Array], Array], places: Array) -> tuple[float, floa
 
 
 def rounded_by_time(times: Array, force: Array) -> Array:
-    """What the rounding of times, ascending, (n,), shifts a force by at them, N: a steep one late by much.
+    """What rounding of times, ascending, (n,), shifts a force by between them, N, (n - 1,): a steep one late by much.
 
     By no more than the force changes between two rows that rounding cannot tell apart.
     """
     rounded = ROUNDED_TIME * times[1:]
     steps = np.maximum(np.diff(times), rounded)
-    shifted = np.abs(np.diff(force)) * np.divide(rounded, steps, out=np.zeros_like(steps), where=steps > 0.0)
-    return np.asarray(np.maximum(np.append(shifted, 0.0), np.append(0.0, shifted)))
+    share = np.divide(rounded, steps, out=np.zeros_like(steps), where=steps > 0.0)
+    return np.asarray(np.abs(np.diff(force)) * share)
 
 
 def running_integral(values: Array, places: Array) -> Array:

@@ -121,6 +121,8 @@ TABLE = (
     Constant("lumped.laws._assembly", "LEAST_SHARE", MEASURED, "two integrations may agree in a number by chance"),
     Constant("lumped.laws.mdr", "SAFETY", MEASURED, "of a limit of three marches beside that of two"),
     Constant("lumped.solvers.point.half_widths", "SAFETY", MEASURED, "of first-order estimates told at some points"),
+    Constant("lumped.numbers", "ROUNDED_TIME", DERIVED, "of times that are sums of hundreds of steps, and of flights"),
+    Constant("lumped.pounding.study", "BETWEEN_POINTS", DERIVED, "of a polynomial over a sixth of a period"),
 )
 
 

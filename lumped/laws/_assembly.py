@@ -136,7 +136,7 @@ def bars(fine: Answer, coarse: Answer, safety: float) -> tuple[dict[str, Quantit
     missed = force - coarse.columns.force(places)
     worst, l2 = _largest_and_norm(times, force[: times.size], missed[: times.size])
     passed = _impulse_missed(fine, coarse, times)
-    steep, late = _largest_and_norm(times, force[: times.size], rounded_by_time(times, force[: times.size]))
+    steep, late = _rounded(times, force[: times.size])
     quantities = {"history_l2": Quantity(0.0, safety * l2 + max(fine.rounding, late), "1")}
     for name, value in fine.values.items():
         other, error = coarse.values[name], None
@@ -182,6 +182,13 @@ def _largest_and_norm(times: Array, force: Array, missed: Array) -> tuple[float,
     weights = np.append(steps, 0.0) + np.append(0.0, steps)  # of the trapezoidal rule, twice: of both norms
     norm = float(weights @ force**2)
     return float(np.abs(missed).max()), math.sqrt(float(weights @ missed**2) / norm) if norm else 0.0
+
+
+def _rounded(times: Array, force: Array) -> tuple[float, float]:
+    """By how much rounding of these times shifts a force at most, N, and its L2 norm over that of the force."""
+    shifted, steps = rounded_by_time(times, force), np.diff(times)
+    norm = float(steps @ (force[1:] ** 2 + force[:-1] ** 2)) / 2.0
+    return float(shifted.max(initial=0.0)), math.sqrt(float(steps @ shifted**2) / norm) if norm else 0.0
 
 
 def wider(one: Mapping[str, Quantity], other: Mapping[str, Quantity]) -> dict[str, Quantity]:

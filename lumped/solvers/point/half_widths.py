@@ -207,7 +207,7 @@ def _of(
     lacking_depth, lacking_rate = _in_a_row(depths, rates, start)
     lacking_force = stiffness * lacking_depth + damping * lacking_rate + moved
     times = row.starts[:, None] + row.lengths[:, None] * share
-    late = rounded_by_time(times.ravel(), force.ravel()).reshape(times.shape)
+    late = np.append(0.0, rounded_by_time(times.ravel(), force.ravel())).reshape(times.shape)
     rounded = np.maximum(late, ROUNDING_OF_DEPTH * np.abs(stiffness) * depth)
     weights = passing * NODES.weights
     return Deviation(times, weights, depth, rate, force, lacking_depth, lacking_rate, lacking_force, rounded)
