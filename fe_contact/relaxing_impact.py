@@ -54,7 +54,8 @@ FEWEST = 5  # instants that tell a trend to the end
 class Instant:
     """Striker and body at the end of a step: s, and in units of the solid depth, velocity and impulse.
 
-    ``memory`` of the core's points and, as displacement, of the ``rim``; ``work`` done on the body by then.
+    As under a rigid contact, to first order in the penalty's softness: ``displacement`` (2 N,) and the nodal forces
+    ``borne`` there, (2 N,); ``memory`` of the core's points and, as displacement, of the ``rim``; ``work`` by then.
     """
 
     time: float
@@ -64,6 +65,8 @@ class Instant:
     force: float
     radius: float
     found: Equilibrium | None
+    displacement: Array
+    borne: Array
     memory: State
     rim: State
     work: float = 0.0
@@ -132,7 +135,8 @@ class Marcher:
     def _touch(self) -> Instant:
         core, none = self.body.body.core, Fading.over(self.law.network, 1.0)
         memory, rim = none.at_rest(4, *core.weight.shape), none.at_rest(self.body.body.rim.size)
-        return Instant(0.0, 0.0, self.strike.velocity / self.solid.unit, 0.0, 0.0, 0.0, None, memory, rim)
+        still, velocity = np.zeros(core.size), self.strike.velocity / self.solid.unit
+        return Instant(0.0, 0.0, velocity, 0.0, 0.0, 0.0, None, still, still, memory, rim)
 
     def _time_left(self, instants: list[Instant]) -> float | None:
         """Until the contact ends, s, while the force falls; None before."""
@@ -157,20 +161,22 @@ class Marcher:
             return replace(here, time=here.time + length, depth=depth, velocity=parted, force=0.0)
         fading = Fading.over(self.law.network, length)
         found = self._equilibrium(here, depth, fading)
-        balance, force = found.balance, found.rigid_force
+        force, (displacement, loaded) = found.rigid_force, found.rigid
         given = 0.5 * length * (here.force + force)
-        rim = balance.displacement[self.body.body.rim]
+        borne = found.balance.encounter.body.forces(loaded, displacement)
         return Instant(
             time=here.time + length,
             depth=depth,
             velocity=here.velocity + length * pull - slowed * given,
             impulse=here.impulse + given,
             force=force,
-            radius=contact_radius(balance) if force > 0.0 else 0.0,
+            radius=contact_radius(found.balance) if force > 0.0 else 0.0,
             found=found,
-            memory=balance.loaded.answer.state,
-            rim=fading.onwards(here.rim, rim),
-            work=here.work + self._worked(here, found),
+            displacement=displacement,
+            borne=borne,
+            memory=loaded.answer.state,
+            rim=fading.onwards(here.rim, displacement[self.body.body.rim]),
+            work=here.work + 0.5 * float((here.borne + borne) @ (displacement - here.displacement)),
             iterations=here.iterations + found.iterations,
         )
 
@@ -195,13 +201,6 @@ class Marcher:
                 return pressed_first(solid.encounter, lead, penalty, start, here.memory)
             except EquilibriumLost:
                 raise lost from None
-
-    def _worked(self, here: Instant, found: Equilibrium) -> float:
-        """On the body in a step, by the mean of the stresses at its ends."""
-        ends = [found] if here.found is None else [here.found, found]
-        forces = np.sum([_body_forces(one) for one in ends], axis=0)
-        change = found.balance.displacement - (0.0 if here.found is None else here.found.balance.displacement)
-        return 0.5 * float(forces @ change)
 
     def _record(self, instants: list[Instant], separated: bool) -> March:
         """What the march leaves behind; after its last step the contact ends as the trend says."""
@@ -235,15 +234,15 @@ class Marcher:
         strike, joule, found = self.strike, self.scale * self.solid.unit / self.solid.lead, last.found
         assert found is not None  # no impact ends where it begins
         brought = 0.5 * strike.mass * strike.velocity**2 + strike.mass * strike.gravity * depth
-        stored = joule * self._stored(last, found.balance.displacement)
+        stored = joule * self._stored(last)
         none = dict.fromkeys(("radiated", "numerical"), 0.0)
         out = 0.5 * strike.mass * speed**2
         known = {"in": brought, "out": out, "stored": stored, "viscous": joule * last.work - stored}
         return balanced({**known, "contact": joule * found.balance.touch.energy, **none})
 
-    def _stored(self, last: Instant, displacement: Array) -> float:
-        """By what lasts and by every branch, displaced so in the end, (2 N,)."""
-        body, law = self.body.body, self.law
+    def _stored(self, last: Instant) -> float:
+        """By what lasts and by every branch in the end."""
+        body, law, displacement = self.body.body, self.law, last.displacement
         rim, shares = displacement[body.rim], np.array(law.network.moduli) / law.network.glassy
         lasting, nu = law.network.relaxed / law.network.glassy, law.branches_nu
         found = body.core.answered(displacement, law.lasting).energy + float(0.5 * lasting * rim @ body.rest @ rim)
@@ -253,14 +252,6 @@ class Marcher:
             points = float(np.vdot(body.core.weight, square)) / (4.0 * law.sudden.shear)
             found += float(points + 0.5 * moved @ body.rest @ moved) / share
         return found
-
-
-def _body_forces(found: Equilibrium) -> Array:
-    """Of the body, not of the contact, (2 N,)."""
-    balance, body = found.balance, found.balance.encounter.body
-    forces = balance.loaded.forces.copy()
-    forces[body.rim] += body.rest @ balance.displacement[body.rim] + body.pull
-    return forces
 
 
 def _throughout(change: Variation) -> Variation:

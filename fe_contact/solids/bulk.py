@@ -225,6 +225,12 @@ class CoredBody:
             rest -= coupling.T @ factorized(beside[outer][:, outer].tocsc())(coupling.toarray())
         return cls(core, response, 0.5 * (rest + rest.T), np.zeros(rim.size), rim, np.setdiff1d(within, fixed))
 
+    def forces(self, loaded: Loaded, displacement: Array) -> Array:
+        """Nodal forces (2 N,) of all of it, where a displacement (2 N,) has ``loaded`` its core."""
+        found = loaded.forces.copy()
+        found[self.rim] += self.rest @ displacement[self.rim] + self.pull
+        return found
+
 
 def _denoised(difference: Matrix, diagonal: Array) -> Matrix:
     """Without what rounding leaves of entries that have been taken away."""

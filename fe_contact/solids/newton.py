@@ -120,9 +120,7 @@ class Balance:
     def residual(self) -> Array:
         """Forces that are not balanced, (free,)."""
         body = self.encounter.body
-        forces = self.loaded.forces + self.touch.forces
-        forces[body.rim] += body.rest @ self.displacement[body.rim] + body.pull
-        return forces[body.free]
+        return (body.forces(self.loaded, self.displacement) + self.touch.forces)[body.free]
 
     def factors(
         self,
@@ -156,11 +154,13 @@ class Balance:
 class Equilibrium:
     """A ``balance`` found in so many ``iterations``.
 
-    ``rate`` (2 N,): its displacement by the depth, by the last factors, which are those of a place next to it.
+    ``rate`` (2 N,): its displacement by the depth, and ``softened`` (2 N,) what the penalty's softness takes from it,
+    to first order, both by the last factors, which are those of a place next to it.
     """
 
     balance: Balance
     rate: Array
+    softened: Array
     iterations: int
 
     def predicted(self, depth: float) -> Array:
@@ -183,6 +183,17 @@ class Equilibrium:
         """On the striker if the penalty were rigid, to first order in its softness."""
         touch = self.balance.touch
         return 2.0 * touch.force + float(touch.forces @ self.rate)
+
+    @property
+    def rigid(self) -> tuple[Array, Loaded]:
+        """Displacement (2 N,) and core if the penalty were rigid, to first order in its softness.
+
+        As they are where that would turn an element inside out.
+        """
+        here, body = self.balance, self.balance.encounter.body
+        displacement = here.displacement + self.softened
+        loaded = body.core.answered(displacement, body.response, here.state)
+        return (displacement, loaded) if np.isfinite(loaded.energy) else (here.displacement, here.loaded)
 
     @property
     def error(self) -> float:
@@ -283,9 +294,10 @@ def _descending(here: Balance, at: Callable[[Array], Balance], settled: float) -
 
 
 def _equilibrium(there: Balance, solve: Callable[[Array], Array], iterations: int) -> Equilibrium:
-    """With its rate, by factors from next to it."""
-    rate = _whole(there, solve(-there.touch.stiffening[there.encounter.body.free]))
-    return Equilibrium(there, rate, iterations)
+    """With what depth and penalty change of it, by factors from next to it."""
+    free = there.encounter.body.free
+    rate, softened = (_whole(there, solve(-by[free])) for by in (there.touch.stiffening, there.touch.forces))
+    return Equilibrium(there, rate, softened, iterations)
 
 
 def _step(

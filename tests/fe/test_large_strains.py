@@ -667,7 +667,8 @@ class Sprung:
     def __post_init__(self) -> None:
         self.displacement = self.residual = np.array([self.place])
         self.energy = self.base + 0.5 * self.place**2 if self.place <= self.ends else np.inf
-        self.touch: Any = SimpleNamespace(touching=abs(self.place) > 1e-3 * np.arange(3), stiffening=np.ones(1))
+        touching, one = abs(self.place) > 1e-3 * np.arange(3), np.ones(1)
+        self.touch: Any = SimpleNamespace(touching=touching, stiffening=one, forces=one)
         self.encounter: Any = SimpleNamespace(body=SimpleNamespace(free=np.array([0])))
 
     def factors(self, convex: bool, unstrained: bool, meets: Array) -> Callable[[Array], Array]:
@@ -734,7 +735,7 @@ def test_whole_steps_are_given_up_after_eight_or_once_two_in_a_row_promise_more(
     tried, free = list[Array](), SimpleNamespace(body=SimpleNamespace(free=np.array([0])))
 
     def balance() -> Any:
-        touch = SimpleNamespace(touching=np.ones((1, 1), bool), stiffening=np.ones(1))
+        touch = SimpleNamespace(touching=np.ones((1, 1), bool), stiffening=np.ones(1), forces=np.ones(1))
         residual = np.array([-(shrinks ** (0.5 * len(tried)))])
         loaded = SimpleNamespace(foreseen=lambda change: None)
         solved: Any = SimpleNamespace(residual=residual, energy=1.0, displacement=np.zeros(1), touch=touch)
@@ -832,7 +833,7 @@ def test_a_body_bears_waves_where_it_is_and_where_it_goes_on_to_unless_it_cannot
         balance: Any = SimpleNamespace(
             encounter=encounter, displacement=displacement, depth=depth, state=(), loaded=loaded
         )
-        return Equilibrium(balance, np.array([-1.0]), 1)
+        return Equilibrium(balance, np.array([-1.0]), np.zeros(1), 1)
 
     assert equilibrium(0.1).elliptic(1.0 - onwards) == borne
     assert not equilibrium(0.45).elliptic(0.1), "here it does not"
