@@ -138,7 +138,8 @@ class Indenting:
         errors = {cause: float(found.budget[cause].max()) for cause in CAUSES}
         if sum(errors.values()) <= found.numerics.tolerance:
             return Finer(None)
-        return Finer(dominant(errors, found.numerics, self.pinned))
+        kept = self.pinned | solids.exhausted(found.base.mesh_order, found.numerics)
+        return Finer(dominant(errors, found.numerics, kept))
 
     def _budget(self, base: PressedDepths, numerics: Numerics, counted: Counted) -> dict[str, float]:
         """Relative error of the force by cause; ``counted`` is told of every depth.

@@ -32,7 +32,7 @@ from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics, tolerance_of
 from fe_contact.solids.base import State
 from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.newton import Encounter, Equilibrium, EquilibriumLost, material_of
-from fe_contact.solids.pressing import MESH_ORDER, Solid, contact_radius, pressed_first
+from fe_contact.solids.pressing import Solid, contact_radius, exhausted, pressed_first
 from fe_contact.solids.relaxing import Fading, FadingLaw, doubled
 from fe_contact.steppers.steps import March, Strike, Work
 from lumped.result.model_ledger import Peak, model_ledger
@@ -286,8 +286,8 @@ class RelaxingStrikes:
 
     def certified(self, numerics: Numerics) -> Budget:
         """The contact and its bars: steps on the finest mesh, all else with half of them. Raises NotReached."""
-        half = numerics.varied(steps=numerics.steps // 2)
-        mesh, by_mesh = other_mesh(half, MESH_ORDER)
+        half, solid = numerics.varied(steps=numerics.steps // 2), Marcher.of(self.scene, numerics).solid
+        mesh, by_mesh = other_mesh(half, solid.mesh_order)
         softer, stiff = other_setting(half, "penalty")
         nearer, far = other_setting(mesh, "far_radius")
         settings = (numerics, half, numerics.varied(steps=numerics.steps // 4), mesh, softer, nearer)
@@ -303,8 +303,8 @@ class RelaxingStrikes:
         }
         works = [run.work for run in runs]
         iterations = sum(one.iterations for one in works)
-        unknowns = Marcher.of(self.scene, numerics).solid.unknowns
-        return Budget(value, runs[0], changes, TotalWork.of(works, unknowns, iterations, iterations), numerics)
+        total = TotalWork.of(works, solid.unknowns, iterations, iterations)
+        return Budget(value, runs[0], changes, total, numerics)
 
     def _run(self, numerics: Numerics) -> March:
         message = f"{numerics.elements_per_contact:.3g} elements along the contact radius, {numerics.steps} steps"
@@ -319,7 +319,9 @@ class RelaxingStrikes:
         if meets(found.quantities, found.numerics.tolerance):
             return Finer(None)
         excess = {cause: float(shares_of(found, cause).max()) for cause in CAUSES}
-        return Finer(dominant(excess, found.numerics, self.chosen.pinned, least=1.0))
+        order = Marcher.of(self.scene, found.numerics).solid.mesh_order
+        kept = self.chosen.pinned | exhausted(order, found.numerics)
+        return Finer(dominant(excess, found.numerics, kept, least=1.0))
 
     def ledger(self, found: Budget) -> tuple[LedgerEntry, ...]:
         """What the model leaves out of the impact that was found."""

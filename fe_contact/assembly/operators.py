@@ -267,7 +267,8 @@ class SolidMesh:
 
     ``mean_radius``, in that unit, of a ring of round section, whose surface counts angles from its top; ``covered``:
     whether a plane touches all of the surface from the first; ``ends``: whether the mesh is all of it; ``lead``: share
-    of a depth that is pressed here, half of it where both sides are alike.
+    of a depth that is pressed here, half of it where both sides are alike; ``sharp``: whether it has corners between a
+    held and a free side, where stresses are infinite.
     """
 
     body: ElasticBody
@@ -277,6 +278,7 @@ class SolidMesh:
     covered: bool = False
     ends: bool = False
     lead: float = 1.0
+    sharp: bool = False
 
 
 @on_disk

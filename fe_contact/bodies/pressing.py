@@ -37,9 +37,8 @@ STIFFER = 6.0  # penalty where the contact ends at a rim, over that where it may
 REFINEMENT, LINE_REFINEMENT = 2.5, 2.0
 STRUCK_REFINEMENT = 4.0  # the same in an impact: its force must be smooth in time
 FINITE_REFINEMENT = 2.0  # the same where strains are large
-NEAREST = (
-    0.2  # how far beside the rim of a flat end contacts of an impact are resolved, over the largest: F is 0.1 there
-)
+SHARP_REFINEMENT = 4.0  # the same with corners: of fewer elements half are nearly as many
+NEAREST = 0.2  # work: of the largest distance from a flat end's rim, from where contacts of an impact are resolved
 FAINT = 1e-4  # share of the peak force below which an impact's contact may be resolved less
 SPHERE_REFINEMENT = 3.0  # the same on spheres, of which two may touch whose meshes do not match
 WIDEST = 1.2  # rad from the first touch: a contact on a circle ends before

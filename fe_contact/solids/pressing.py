@@ -43,6 +43,10 @@ from lumped.shapes import Shape
 from lumped.shapes._block import Block
 
 MESH_ORDER = 1.5  # of the force's error where the contact ends anywhere in an element
+# The same where corners have infinite stresses: at small strain twice Williams' exponent, 1.2 to 1.5, but elements much
+# strained show less, down to this where the volume stays; a mesh graded to a corner would be turned inside out there.
+SHARP_ORDER = 0.4
+MOST_SHARP = 3.0  # work: elements along a contact from which more of them take little from that
 CORRECTED = "corrected"
 CORE = 0.5  # of the way from the contact to the end of the mesh strains may be large
 RAMP = (0.02, 0.2, 1.0)  # shares of the penalty with which a body is pressed for the first time
@@ -58,7 +62,8 @@ NEAREST = 0.02  # apart in ln depth, a way is not made in halves any more
 class Solid:
     """A body on its mesh, in units of ``unit``, m, and E*; forces in unit to the power ``dimension``.
 
-    ``ends``: whether the mesh is all of it; ``lead`` share of a depth by which the striker comes in here.
+    ``ends``: whether the mesh is all of it; ``lead`` share of a depth by which the striker comes in here; ``sharp``:
+    whether it has corners where stresses are infinite.
     """
 
     encounter: Encounter
@@ -67,6 +72,12 @@ class Solid:
     unknowns: int
     ends: bool
     lead: float
+    sharp: bool
+
+    @property
+    def mesh_order(self) -> float:
+        """Of the error in the force that elements leave."""
+        return SHARP_ORDER if self.sharp else MESH_ORDER
 
     @classmethod
     def of(cls, indenter: Indenter, radii: Array, numerics: Numerics) -> Solid:
@@ -88,7 +99,7 @@ class Solid:
         striker, placed = _touched(mesh, profile, rolled)
         skin = Skin.of(body.surface, numerics.order, core.size, placed)
         encounter = replace(Encounter.of(whole, skin, striker), covered=mesh.covered)
-        return cls(encounter, unit, body.surface.dimension - 1, core.size, mesh.ends, mesh.lead)
+        return cls(encounter, unit, body.surface.dimension - 1, core.size, mesh.ends, mesh.lead, mesh.sharp)
 
     def advanced(
         self,
@@ -149,6 +160,12 @@ def check_large(source: str, geometry: Geometry, model: Model, enforcement: str,
         faults.append(Fault(source, "numerics.enforcement", reason))
     if faults:
         raise BadInput(faults)
+
+
+def exhausted(mesh_order: float, numerics: Numerics) -> frozenset[str]:
+    """Settings of a body with corners of infinite stress that are not worth what they cost any more."""
+    enough = mesh_order == SHARP_ORDER and numerics.elements_per_contact >= MOST_SHARP
+    return frozenset({"elements_per_contact"} if enough else ())
 
 
 class Softer(NamedTuple):
@@ -270,7 +287,7 @@ def _told(solid: Solid, found: Mapping[int, Reached]) -> PressedDepths:
         "contact_problems": len(rows),
         "iterations": int(iterations.sum()),
     }
-    return PressedDepths(force, radius, work, MESH_ORDER, solid.ends, float(newton.max()))
+    return PressedDepths(force, radius, work, solid.mesh_order, solid.ends, float(newton.max()))
 
 
 def _widening(depth: Array, radii: Array) -> float:

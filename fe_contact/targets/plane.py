@@ -14,7 +14,7 @@ from fe_contact.assembly.disk_cache import on_disk
 from fe_contact.assembly.forms import Array, isotropic, stiffness
 from fe_contact.assembly.operators import ElasticBody, SolidMesh, basis_on, made
 from fe_contact.assembly.surface import face
-from fe_contact.bodies.pressing import FINITE_REFINEMENT, Pressed, Still, held
+from fe_contact.bodies.pressing import SHARP_REFINEMENT, Pressed, Still, held
 from fe_contact.settings import Numerics
 from fe_contact.targets import _round
 from fe_contact.targets.base import MeshedTarget
@@ -64,10 +64,10 @@ def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:
     """The upper half of a block for large strains; of one that is strained alike few elements are all."""
     block = indenter.shape
     assert isinstance(block, Block)
-    elements, radius = FINITE_REFINEMENT * FEWER * numerics.elements_per_contact, block.fixed_radius
+    elements, radius = SHARP_REFINEMENT * FEWER * numerics.elements_per_contact, block.fixed_radius
     half = 0.5 * block.thickness / radius
     body = _solid_block(1.0 if block.uniform else elements, numerics.order, half, block.sides, block.faces)
-    return SolidMesh(body, radius, covered=True, ends=True, lead=0.5)
+    return SolidMesh(body, radius, covered=True, ends=True, lead=0.5, sharp=not block.uniform)
 
 
 @cached

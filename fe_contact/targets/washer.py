@@ -8,7 +8,7 @@ from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import ElasticBody, SolidMesh, basis_on, made
 from fe_contact.assembly.surface import face
 from fe_contact.bodies.bulk_memory import Moduli
-from fe_contact.bodies.pressing import FINITE_REFINEMENT, BodyStill, Still, held, thickness_over
+from fe_contact.bodies.pressing import FINITE_REFINEMENT, SHARP_REFINEMENT, BodyStill, Still, held, thickness_over
 from fe_contact.settings import Numerics
 from fe_contact.steppers import bulk_surface
 from fe_contact.steppers.bulk_surface import BulkSurface, Pace
@@ -36,8 +36,9 @@ def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:
     target = indenter.target
     assert isinstance(target, Washer)
     elements, order, inner, outer, rim, bonded = _sizes(target, target.outer_radius, numerics)
-    body = _body(FINITE_REFINEMENT * elements, order, inner, outer, rim, bonded, False)
-    return SolidMesh(body, target.height, covered=True, ends=True)
+    refinement = SHARP_REFINEMENT if bonded else FINITE_REFINEMENT
+    body = _body(refinement * elements, order, inner, outer, rim, bonded, False)
+    return SolidMesh(body, target.height, covered=True, ends=True, sharp=bonded)
 
 
 def relaxing(geometry: Geometry, numerics: Numerics) -> BulkSurface:

@@ -393,6 +393,22 @@ def test_a_bonded_block_is_that_of_small_strains_where_it_is_lightly_pressed() -
     assert slope == pytest.approx(middle.balance.force, rel=1e-6)
 
 
+@pytest.mark.parametrize("target", ["plane", "washer"])
+def test_bars_cover_what_corners_of_infinite_stress_leave(target: str) -> None:
+    """Of a bonded block and a bonded washer, deep, against three times as many elements."""
+    material, model = Material(Relaxation(1.0), 0.3, hyperelastic="hencky"), Model(kinematics="finite")
+    bodies = {
+        "plane": Indenter(Prism(np.pi, 2.0, "free", "bonded"), material, Plane(), model=model),
+        "washer": Indenter(Punch(3.0), material, Washer(1.0, 2.0, 1.0, "bonded"), model=model),
+    }
+    body, depth = bodies[target], 0.4 if target == "plane" else 0.2
+    found = indent(body, (depth,), {"tolerance": 3e-2})
+    fine = settings({"tolerance": 3e-2, "elements_per_contact": 6.0}, body.shape)
+    way = depth * np.array([0.5, 1.0])
+    exact = press_any(body, way, np.array([2.0, 2.0]), fine).force[1] * body.modulus(False)
+    assert abs(found.force[0] - exact) < found.force_error[0]
+
+
 @pytest.mark.parametrize("unit", [1.0, 1e-3])
 def test_under_a_tip_a_mesh_serves_depths_up_to_twice_its_shallowest_and_under_a_sphere_all(unit: float) -> None:
     """In any order that they are asked in, and in any unit."""
@@ -424,7 +440,7 @@ def test_contacts_are_foreseen_as_wide_as_a_power_of_the_depth(power: float) -> 
 
 def test_what_was_found_at_depths_is_told_in_the_order_in_which_they_were_asked_for() -> None:
     """The work of all of them, and the worst that another iteration would change."""
-    solid: Any = SimpleNamespace(unknowns=70, ends=True)
+    solid: Any = SimpleNamespace(unknowns=70, ends=True, mesh_order=1.5)
     found = {2: Reached(3.0, 0.3, 1e-9, 5), 0: Reached(1.0, 0.1, 4e-9, 6), 1: Reached(2.0, 0.2, 2e-9, 7)}
     told = pressing._told(solid, found)
     assert told.force.tolist() == [1.0, 2.0, 3.0]
