@@ -146,6 +146,14 @@ class Marcher:
         roots = [one.force ** (1.0 / self.power) for one in last]
         return time_left([one.time for one in last], roots, last[-1].time)
 
+    def _last_left(self, instants: list[Instant]) -> float:
+        """Until a contact that has ended did, s, by the latest trend of a force that fell; 0 by none."""
+        for number in range(len(instants), 0, -1):
+            left = self._time_left(instants[:number])
+            if left is not None:
+                return max(instants[number - 1].time + left - instants[-1].time, 0.0)
+        return 0.0
+
     def _next(self, instants: list[Instant], left: float | None) -> Instant:
         """The end of the next step: depth first, then force, then speed."""
         here, strike, numerics = instants[-1], self.strike, self.numerics
@@ -207,8 +215,8 @@ class Marcher:
         unit, strike, last = self.solid.unit, self.strike, instants[-1]
         rows = [(one.time, unit * one.depth, self.scale * one.impulse) for one in instants]
         speed = unit * last.velocity
-        if separated:
-            left = self._time_left(instants) or 0.0
+        left = self._last_left(instants) if separated else 0.0
+        if left > 0.0:
             impulse = self.scale * last.force * left / (self.power + 1.0)
             slowed = impulse / strike.mass * (self.power + 1.0) / (self.power + 2.0)
             fallen = 0.5 * strike.gravity * left - slowed

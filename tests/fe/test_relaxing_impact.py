@@ -436,6 +436,23 @@ def test_a_contact_ends_as_a_force_that_falls_by_the_power_of_its_curve_moves_th
     assert march.energy["out"] == pytest.approx(out, rel=1e-12)
 
 
+@pytest.mark.parametrize("late", [0.06, 0.2])
+def test_a_contact_whose_force_jitters_before_it_is_over_ends_by_the_trend_before(
+    late: float, settings_of: Callable[..., Numerics]
+) -> None:
+    """Forces (1 - t)^(3/2), and a last one that is more than that before it: at 1 s, or there if that is later."""
+    strike = Strike(lambda r: r**2, 0.4, 0.7, 0.0, Relaxation(1.0), 10.0)
+    spring = on_spring(strike, settings_of(strike, steps=60), 0.02, 3.0)
+    found: Any = SimpleNamespace(balance=SimpleNamespace(displacement=np.zeros(1), touch=SimpleNamespace(energy=0.0)))
+    times = [0.0, 0.6, 0.7, 0.8, 0.9, 0.9 + late]
+    forces = [0.0, *((1.0 - time) ** 1.5 for time in times[1:5]), 0.04]
+    rest = replace(spring._touch(), depth=1.0, velocity=-30.0, found=found)
+    instants = [replace(rest, time=time, force=force) for time, force in zip(times, forces, strict=True)]
+    march = spring._record(instants, separated=True)
+    assert march.time[-1] == pytest.approx(max(1.0, 0.9 + late))
+    assert np.all(np.diff(march.time) > 0.0)
+
+
 def test_an_end_is_told_from_the_fourth_step_on_while_the_striker_leaves(
     settings_of: Callable[..., Numerics],
 ) -> None:
