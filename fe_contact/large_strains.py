@@ -142,6 +142,16 @@ class KnownCurve:
         between = float(np.abs(self.force(place) - lower(place)).max())
         return {cause: float(error.max()) for cause, error in self.pressed.budget.items()} | {"curve": between}
 
+    def shallow(self, depth: Array) -> Array:
+        """Relative error of the force at depths (n,), m, below the least, where a straight line stands for the curve.
+
+        Half of the curve's bend there times the square of the way, in logarithms; the bend fades on the way to touch.
+        """
+        way = np.log(np.maximum(self.deepest * SHALLOWEST / np.maximum(depth, np.finfo(float).tiny), 1.0))
+        lower = _fitted(self.pressed, self.deepest, DEGREE - 1)[0]
+        bend = max(abs(float(curve.deriv(2)(0.0))) for curve in (self.force, lower)) / math.log(SHALLOWEST) ** 2
+        return np.minimum(0.5 * bend * way**2, 1.0)
+
     @property
     def relative(self) -> float:
         """The largest relative bar of the depths."""
@@ -188,7 +198,8 @@ def _result(scene: Scene, known: KnownCurve, found: Result, tolerance: float, cl
         for name, quantity in found.quantities.items()
     }
     peak = quantities["peak_force"].value or math.inf
-    band = _band(found, others, sum(known.errors.values()), quantities["duration"].error or 0.0)
+    relative = sum(known.errors.values()) + known.shallow(found.history.depth)
+    band = _band(found, others, relative, quantities["duration"].error or 0.0)
     history = replace(found.history, force_error=band)
     missed = unmet(quantities, tolerance)
     return replace(
@@ -220,8 +231,9 @@ def _distance(first: Result, second: Result, name: str) -> float:
     return float(math.sqrt(np.trapezoid(apart**2, time) / np.trapezoid(first.history.force**2, time)))
 
 
-def _band(found: Result, others: Sequence[Result], relative: float, later: float) -> Array:
-    """Half-width of the force's bar at the rows, N: as far as the others are apart, and what the curve errs at a depth.
+def _band(found: Result, others: Sequence[Result], relative: Array, later: float) -> Array:
+    """Half-width of the force's bar at the rows, N: as far as the others are apart, and what the curve errs at a depth,
+    ``relative`` (n,).
 
     A softer curve ends so much ``later``, s, as a stiffer one, whose force is zero by then, ends sooner.
     """

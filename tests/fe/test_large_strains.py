@@ -969,6 +969,23 @@ def test_a_curve_that_errs_by_its_bars_leaves_the_impact_within_its_own(
     assert np.median(found.history.force_error) < 5.0 * np.median(off)
 
 
+@pytest.mark.parametrize("energy", ["neo_hooke_split", "yeoh"])
+def test_the_force_of_a_slight_contact_is_in_its_band(energy: str) -> None:
+    """Of a plate far below the least depth that was pressed, where a straight line stands for what a point answers."""
+    material = {"law": "elastic", "E": 1e6, "nu": 0.3, "hyperelastic": energy}
+    keys = {"striker.material": material, "striker.sides": "confined", "striker.velocity": 5.0}
+    found = run(Scene.load("polymer-prism", {**keys, "model.kinematics": "finite"}), tolerance=1e-2)
+    block, history = found.scene.geometry.shape, found.history
+    assert isinstance(block, Prism)
+    slight = (history.depth > 0.0) & (history.depth < 0.02 * history.depth.max())
+    assert np.sum(slight) > 3
+    along, none = -history.depth[slight] / block.thickness, np.zeros(int(np.sum(slight)))
+    solid = found.scene.geometry.material
+    shear, lame = solid.shear.relaxed, 2.0 * solid.shear.relaxed * solid.nu / (1.0 - 2.0 * solid.nu)
+    exact = -block.area * strained(energy_of(energy), np.stack([none, none, none, along, none]), shear, lame).stress[3]
+    assert np.all(np.abs(history.force[slight] - exact) < history.force_error[slight])
+
+
 @pytest.mark.parametrize(("lessened", "converged"), [(True, True), (False, False)])
 def test_depths_are_pressed_finer_until_the_impact_meets_its_tolerance(
     lessened: bool, converged: bool, monkeypatch: pytest.MonkeyPatch
