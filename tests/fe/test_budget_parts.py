@@ -205,13 +205,15 @@ def test_the_contact_whose_bars_miss_most_says_what_is_refined(
 def test_what_relaxes_strained_much_is_refined_by_what_misses_most(monkeypatch: pytest.MonkeyPatch) -> None:
     """And not at all where the bars meet the tolerance."""
     monkeypatch.setattr(relaxing_impact, "shares_of", lambda one, cause: np.array([0.1, 3.0]))
-    monkeypatch.setattr(relaxing_impact, "dominant", lambda excess, *_, least: (excess, least))
-    chosen: Any = SimpleNamespace(pinned=())
-    found: Any = SimpleNamespace(numerics=SimpleNamespace(tolerance=1e-3), quantities=None)
-    for met in (True, False):
+    monkeypatch.setattr(relaxing_impact, "dominant", lambda excess, _, pinned, least: (excess, pinned, least))
+    chosen: Any = SimpleNamespace(pinned=frozenset())
+    found: Any = SimpleNamespace(numerics=SimpleNamespace(tolerance=1e-3, elements_per_contact=3.0), quantities=None)
+    for met, order, kept in ((True, 1.5, set()), (False, 1.5, set()), (False, 0.4, {"elements_per_contact"})):
+        body = SimpleNamespace(solid=SimpleNamespace(mesh_order=order))
+        monkeypatch.setattr(relaxing_impact, "Marcher", SimpleNamespace(of=lambda scene, given, body=body: body))
         monkeypatch.setattr(relaxing_impact, "meets", lambda quantities, tolerance, met=met: met)
         settings = relaxing_impact.RelaxingStrikes(chosen, chosen, chosen).finer(found).settings
-        assert settings == (None if met else (dict.fromkeys(CAUSES, 3.0), 1.0))
+        assert settings == (None if met else (dict.fromkeys(CAUSES, 3.0), kept, 1.0))
 
 
 @pytest.mark.parametrize("nodes", [None, 24.0])
@@ -433,7 +435,10 @@ def test_every_setting_of_waves_is_told_by_the_cheapest_runs_that_know_it(
         assert change.factor == pytest.approx(trusted), cause
         assert isinstance(change, certify.EndMoved) == (cause == "time_step")
     assert changes["mesh"][1:] == (("march", "strike", given),), "and what the rows leave"
-    assert [len(one) for one in changes.values()] == [2, 1, 1, 1]
+    swung = changes["time_step"][1]
+    assert isinstance(swung, certify.Swung)
+    assert swung.share == pytest.approx(1.25 * given.swing), "and what echoes do that steps pass over"
+    assert [len(one) for one in changes.values()] == [2, 1, 2, 1]
 
 
 def test_what_rows_of_a_curve_with_waves_leave_is_told_by_half_of_them(numerics: WaveNumerics) -> None:

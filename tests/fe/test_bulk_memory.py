@@ -40,7 +40,7 @@ from lumped.targets.washer import Washer
 backward_euler, galerkin = SCHEMES.get("backward_euler"), SCHEMES.get("galerkin")
 
 BULK = {"target.material.constant": "bulk"}
-SIZES = (3.0, 0.3, 1.0, 3.0)  # a coarse layer as thick as its contact is wide
+SIZES = (3.0, 1.0, 3.0, (0.3, 0.0, 1.0))  # a coarse layer as thick as its contact is wide
 BODIES: dict[str, Recipe[ElasticBody]] = {
     "bonded": layer._body.recipe(SIZES, 3, True, False),
     "sliding": layer._body.recipe(SIZES, 3, False, False),

@@ -232,7 +232,7 @@ def test_the_boundary_of_a_plane_holds_the_line_force_exactly(nu: float) -> None
 def test_only_a_layer_around_an_axis_is_held_from_beyond_its_sides(plane: bool, beyond: float) -> None:
     """An even growth along the layer stretches it alone, and the plate around by p = 2 G/r u (Lame)."""
     bulk, shear = 0.7, 0.4
-    basis = basis_on(_mesh(4.0, 0.3, 1.5, 6.0), 2)
+    basis = basis_on(_mesh(4.0, 1.5, 6.0, (0.3, 0.0, 1.0)), 2)
     width, thickness = np.ptp(basis.doflocs, axis=1)
     growth = np.zeros(2 * basis.N)
     growth[::2] = basis.doflocs[0]

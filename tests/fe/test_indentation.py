@@ -405,7 +405,7 @@ def test_forces_are_pressed_finer_until_all_bars_together_meet_the_tolerance() -
     way, numerics = indenting([1.0, 2.0], False), settings({"tolerance": 1e-2}, Sphere(1.0))
     for share, met in ((0.45, True), (0.55, False)):
         budget = {name: np.array([0.0, share * 1e-2 * (name in ("mesh", "penalty"))]) for name in CAUSES}
-        found: Any = SimpleNamespace(budget=budget, numerics=numerics)
+        found: Any = SimpleNamespace(budget=budget, numerics=numerics, base=SimpleNamespace(mesh_order=np.inf))
         finer = way.finer(found).settings
         assert (finer is None) is met
         if finer is not None:

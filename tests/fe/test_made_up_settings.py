@@ -144,7 +144,7 @@ def test_an_entry_covers_its_own_setting_of_a_body_strained_much_that_relaxes(
         return RelaxingStrikes(nothing, nothing, nothing).certified(settings)
 
     monkeypatch.setattr(relaxing_impact, "Strike", SimpleNamespace(of=lambda scene: STRIKE))
-    solid = SimpleNamespace(solid=SimpleNamespace(unknowns=1))
+    solid = SimpleNamespace(solid=SimpleNamespace(unknowns=1, mesh_order=1.5))
     monkeypatch.setattr(relaxing_impact, "Marcher", SimpleNamespace(of=lambda scene, given: solid))
     found = certified(marched(cause, power, settings))
     errors = off(found.curve)
