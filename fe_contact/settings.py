@@ -118,8 +118,8 @@ AnyNumerics = TypeVar("AnyNumerics", bound=Numerics)
 class WaveNumerics(Numerics):
     """``scheme`` is one of :mod:`fe_contact.dynamics.schemes`, of spectral radius ``rho`` for what no step follows;
     ``mass`` one of :mod:`fe_contact.dynamics.mass`; ``finer``: times as many elements at the surface as the body has;
-    ``echoes``: how often in the contact time a wave comes back that steps follow; ``swing``: share of the peak force by
-    which those that they do not follow may swing it; the rest as in Numerics.
+    ``echoes``: how often in the contact time a wave comes back; ``swing``: share of the peak force by which that may
+    swing it where steps do not follow it; the rest as in Numerics.
     """
 
     rho: Annotated[float, Key(Range(0.0, 1.0), "spectral radius for what no step follows, with waves")]
@@ -128,6 +128,11 @@ class WaveNumerics(Numerics):
     echoes: float = 0.0
     swing: float = 0.0
 
+    @property
+    def follows_echoes(self) -> bool:
+        """Whether there are some that the steps follow."""
+        return self.echoes > 0.0 and self.swing == 0.0
+
 
 KEYS = keys_of(WaveNumerics)  # what a user may choose
 SCALES = {  # what a plan estimates, by field
@@ -135,7 +140,7 @@ SCALES = {  # what a plan estimates, by field
     "contact_time": "s, as it is expected",
     "peak_share": "time of the peak force over the contact time, as it is expected",
     "finer": "times as many elements at the surface as the body has, with waves",
-    "echoes": "how often a wave comes back in the contact time, if the steps follow that",
+    "echoes": "how often a wave comes back in the contact time",
     "swing": "of the peak force, by echoes that the steps do not follow",
 }
 RANGES = {name: (key.kind.low, key.kind.high) for name, key in KEYS.items() if isinstance(key.kind, Range)}

@@ -157,7 +157,7 @@ def _judged(runs: WaveRuns, number: int, numerics: WaveNumerics) -> Judged:
     penalty, stiffer = other_setting(cheap, "penalty")
     coarse = min(cheap, mesh, key=attrgetter("elements_per_contact"))  # it is fine enough to tell of the far field
     far, farther = other_setting(coarse, "far_radius")
-    own, trust = curve_of(contact.march, contact.strike, numerics), FRONTS if numerics.echoes else 1.0
+    own, trust = curve_of(contact.march, contact.strike, numerics), FRONTS if numerics.follows_echoes else 1.0
     changes: dict[str, Causes] = {
         "mesh": (
             Moved.between(curve(cheap), curve(mesh), trust * by_mesh),
@@ -166,7 +166,7 @@ def _judged(runs: WaveRuns, number: int, numerics: WaveNumerics) -> Judged:
         "penalty": (Moved.between(curve(cheap), curve(penalty), factor(ORDER["penalty"], stiffer)),),
         "time_step": (
             EndMoved.between(curve(numerics), curve(half), trust * factor(ORDER["time_step"], False)),
-            Swung(own, SAFETY * numerics.swing),
+            Swung(own, SAFETY * numerics.swing, max(numerics.echoes, 1.0)),
         ),
         "far_field": (Moved.between(curve(coarse), curve(far), factor(ORDER["far_field"], farther)),),
     }
@@ -206,19 +206,22 @@ class EndMoved(Moved):
         return errors | {"duration": errors["duration"] * UNORDERED / self.factor}
 
 
+@dataclass(frozen=True)
 class Swung(Softening):
-    """What echoes that no step follows do to the force: they swing it about what all steps agree on.
+    """What so many ``echoes`` that no step follows do to the force: they swing it about what all steps agree on.
 
-    Path and impulse average them. They may bring the peak to where the force, a half sine, is within twice the swing of
-    its largest.
+    Path and impulse average them, but for one. They may bring the peak to where the force, a half sine, is within twice
+    the swing of its largest.
     """
+
+    echoes: float
 
     @cached_property
     def errors(self) -> dict[str, float]:
         """Error of every quantity, in its unit."""
-        duration = self.curve.duration
-        return dict.fromkeys(super().errors, 0.0) | {
-            "peak_force": self.share * (self.curve.quantities["peak_force"] or 0.0),
+        whole, duration = super().errors, self.curve.duration
+        return {name: error / self.echoes for name, error in whole.items()} | {
+            "peak_force": whole["peak_force"],
             "peak_time": 2.0 / math.pi * math.sqrt(self.share) * duration,
             "duration": self.share * duration,
             "history_l2": self.share,
@@ -226,8 +229,8 @@ class Swung(Softening):
 
     @cached_property
     def energies(self) -> dict[str, float]:
-        """None of any term, J."""
-        return dict.fromkeys(self.curve.energy, 0.0)
+        """Error of every term of the energy account, J."""
+        return {term: error / self.echoes for term, error in super().energies.items()}
 
 
 def curve_of(march: March, strike: Strike, numerics: WaveNumerics, share: float = 1.0) -> Curve:
@@ -235,7 +238,7 @@ def curve_of(march: March, strike: Strike, numerics: WaveNumerics, share: float 
     curve = Curve.of(march, strike)
     rows = _rows(len(curve.x) - 1, numerics, share)
     found = replace(curve.through(rows), mean_force=_smoothed(curve.x, curve.mean_force, rows))
-    if numerics.echoes == 0.0:
+    if not numerics.follows_echoes:
         return found
     highest = float(found.dense_time[found.dense_force.argmax()])  # one of many peaks, which no quartic goes through
     return replace(found, peaked_at=highest)
@@ -244,12 +247,13 @@ def curve_of(march: March, strike: Strike, numerics: WaveNumerics, share: float 
 def reading(march: March, strike: Strike, numerics: WaveNumerics) -> Variation:
     """What these rows leave, as half of them tell."""
     fine, half = (curve_of(march, strike, numerics, share) for share in (1.0, 0.5))
-    return Variation(fine, half, (FRONTS if numerics.echoes else 1.0) * SAFETY / (2**TRUSTED - 1))
+    return Variation(fine, half, (FRONTS if numerics.follows_echoes else 1.0) * SAFETY / (2**TRUSTED - 1))
 
 
 def _rows(steps: int, numerics: WaveNumerics, share: float) -> npt.NDArray[np.intp]:
     """Those to keep of the first and so many steps; both ends."""
-    usual = max(ROWS * (AT / numerics.tolerance) ** (1 / ROWS_ORDER), ROWS_ECHO * numerics.echoes)
+    echoing = ROWS_ECHO * numerics.echoes if numerics.follows_echoes else 0.0
+    usual = max(ROWS * (AT / numerics.tolerance) ** (1 / ROWS_ORDER), echoing)
     count = share * usual * max(steps / numerics.steps, 1.0)
     places = np.linspace(0.0, 1.0, math.ceil(count) + 1)
     return np.unique(np.round(steps * places**2 * (3 - 2 * places)).astype(np.intp))

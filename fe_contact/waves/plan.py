@@ -19,7 +19,6 @@ from fe_contact.budget.plan import EARLY_PEAK, SOONEST_PEAK, Plan
 from fe_contact.dynamics.march import MOST_WORK
 from fe_contact.errors import WavesTooDear
 from fe_contact.settings import RANGES, Given, Numerics, WaveNumerics
-from lumped.errors import BadInput, Fault
 from lumped.laws.mdr import ImpactScales
 from lumped.materials import Relaxation
 from lumped.result.model_ledger import Peak, model_ledger
@@ -33,7 +32,9 @@ STIFF = 16.0  # times as much there
 MUCH = 0.5  # share of dashpots in the stiffness until the force peaks, below which FINER and STIFF count in part
 STEPS = 256  # along a contact, shorter ones about an early peak
 SMOOTH_STEPS = 208  # the same where no wave comes back to the contact
-SHOWN = 0.25  # of the tolerance: by how much echoes swing the force that are followed; others are in its bar
+# Of the tolerance: by how much many echoes may swing the force in its bar; more are followed, of few, any of which may
+# end the contact, half as much.
+SHOWN = 0.6
 STEPS_ECHO = 32.0  # the same along an echo that the force shows
 FEWEST_ECHO = 8  # of them: rows between which an echo is lost agree that there is none
 LOOSER = 0.75  # beyond the default tolerance elements and steps go as it to this power, as `fe-contact tradeoff` has it
@@ -100,14 +101,17 @@ def placed(
     """What ``given`` leaves open for an impact of these scales, on a mesh that ends at ``far_radius``, contact radii.
 
     ``wide``: the contact radius to be ready for over the estimated one; ``stiff``: the body over a half-space under it;
-    ``echoes`` are followed where the force shows them. Raises BadInput where the steps given pass over these.
+    ``echoes`` are followed where the force shows them, unless there are fewer steps ``given`` than tell them.
     """
     tolerance, duration = float(given.get("tolerance", DEFAULT_TOLERANCE)), contact_time(scene, scales)
     finer, looser = max(1.0, DEFAULT_TOLERANCE / tolerance), min(1.0, DEFAULT_TOLERANCE / tolerance)
     elements = max(usual.elements * looser**LOOSER, FEWEST["elements"])
-    followed = echoes.number if echoes.swing > SHOWN * tolerance else 0.0
-    steps = max(max(usual.steps, STEPS_ECHO * followed) * looser**LOOSER, FEWEST["steps"], 2 * FEWEST_ECHO * followed)
-    _check_steps(scene, given, followed)
+    fewest = 2 * FEWEST_ECHO * echoes.number  # half of them, which judge them, have to show echoes too
+    steps = max(usual.steps * looser**LOOSER, FEWEST["steps"])
+    shown = echoes.swing > SHOWN * tolerance * echoes.number / (echoes.number + 1.0)
+    if shown:
+        steps = max(steps, STEPS_ECHO * echoes.number * looser**LOOSER, fewest)
+    steps = min(4 * math.ceil(steps * math.sqrt(finer) / 4), int(RANGES["steps"][1]))
     peak_share = min(max(scales.peak_time / duration, SOONEST_PEAK), 1.0)
     viscous = min(viscous_share(scene.contact_modulus, peak_share * duration) / MUCH, 1.0)
     chosen = {
@@ -116,27 +120,16 @@ def placed(
         "elements_per_contact": elements * math.sqrt(finer),
         "finer": usual.finer + (FINER - usual.finer) * viscous,
         "penalty": usual.penalty * stiff * (1.0 + (STIFF - 1.0) * viscous),
-        "steps": min(4 * math.ceil(steps * math.sqrt(finer) / 4), int(RANGES["steps"][1])),
+        "steps": steps,
         "far_radius": far_radius,
         "contact_radius": wide * scales.contact_radius,
         "contact_time": duration,
         "peak_share": peak_share,
-        "echoes": followed,
-        "swing": 0.0 if followed else echoes.swing,
+        "echoes": echoes.number,
+        "swing": 0.0 if shown and given.get("steps", steps) >= fewest else echoes.swing,
     }
     peak = Peak(scales.peak_force, scales.peak_depth, scales.contact_radius, 2 * scales.peak_time)
     return Plan(WaveNumerics(**{**chosen, **given}), frozenset(given) - {"tolerance"}, model_ledger(scene, peak))
-
-
-def _check_steps(scene: Scene, given: Given, echoes: float) -> None:
-    """Raise BadInput for so few of them that half as many, which judge them, pass over the echoes."""
-    fewest = 2 * FEWEST_ECHO * echoes
-    if "steps" in given and given["steps"] < min(fewest, RANGES["steps"][1]):
-        reason = (
-            f"{given['steps']} pass over {echoes:.3g} echoes that the force shows; "
-            f"accepted: from {math.ceil(fewest)}, or none given"
-        )
-        raise BadInput(Fault(scene.source, "numerics.steps", reason))
 
 
 def viscous_share(modulus: Relaxation, time: float) -> float:

@@ -160,25 +160,32 @@ def test_a_thin_layer_under_a_broad_striker_rings_as_the_waves_across_it() -> No
     assert near[np.gradient(curve.force(near), near).argmax()] == pytest.approx(echo, rel=0.02)  # the first echo
 
 
-def test_steps_that_pass_over_the_echoes_of_a_thin_layer_are_refused() -> None:
+def test_steps_tell_the_echoes_of_a_thin_layer_or_they_stand_in_the_bar() -> None:
     scene = broad_on_thin(6.0, 8.0)
     planned = layer.plan(scene, {"tolerance": 0.1}).numerics
+    assert planned.follows_echoes
     assert planned.steps >= 16 * planned.echoes > 16.0
-    with pytest.raises(BadInput, match="8 pass over"):
-        layer.plan(scene, {"tolerance": 0.1, "steps": 8})
-    assert layer.plan(Scene.load("polymer-layer-waves"), {}).numerics.echoes == 0.0, "a ball's 240 come one by one"
+    few = layer.plan(scene, {"tolerance": 0.1, "steps": 48}).numerics
+    assert not few.follows_echoes
+    assert few.swing > 0.025
+    assert layer.plan(Scene.load("polymer-layer-waves"), {}).numerics.swing < 1e-6, "a ball's 240 come one by one"
 
 
 @pytest.mark.tenth
-@pytest.mark.parametrize(("exponent", "heavier", "followed"), [(8.0, 15.0, True), (6.0, 50.0, False)])
-def test_the_band_holds_the_echoes_of_a_thin_layer(exponent: float, heavier: float, followed: bool) -> None:
+@pytest.mark.parametrize(
+    ("exponent", "heavier", "given", "followed"),
+    [(8.0, 15.0, {}, True), (8.0, 15.0, {"steps": 64}, False), (6.0, 50.0, {}, False)],
+)
+def test_the_band_holds_the_echoes_of_a_thin_layer(
+    exponent: float, heavier: float, given: dict[str, int], followed: bool
+) -> None:
     """Each is a pulse under a face that is nearly flat, by a fiftieth of the peak force or by a twentieth."""
     scene = broad_on_thin(6.0, exponent)
     coefficient = math.sqrt(heavier) * scene.profile.coefficient
     scene = scene.changed({"striker.mass": heavier * scene.mass, "striker.coefficient": coefficient})
-    found = simulate(scene, "fe", {"tolerance": 0.1})
-    assert found.converged, found.message
-    assert (found.numerics["echoes"] > 0.0, found.numerics["swing"] > 0.0) == (followed, not followed)
+    found = simulate(scene, "fe", {"tolerance": 0.1, **given})
+    assert found.converged or given, found.message
+    assert (found.numerics["swing"] == 0.0) is followed
     _, time, velocity, force = columns(scene, float(found.history.time[-1]))
     inwards = time[velocity > 0.0]
     apart = np.abs(np.interp(inwards, found.history.time, found.history.force) - force[velocity > 0.0])

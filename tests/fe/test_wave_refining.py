@@ -52,7 +52,7 @@ def test_steps_are_short_about_an_early_peak_and_grow_with_the_time_since_touch(
 
 
 def settings(**given: Any) -> Any:
-    return SimpleNamespace(**{"tolerance": 3e-3, "peak_share": 0.5, "steps": 320, "echoes": 0.0} | given)
+    return SimpleNamespace(**{"tolerance": 3e-3, "peak_share": 0.5, "steps": 320, "follows_echoes": False} | given)
 
 
 def impact(steps: int, chatter: float, ended: float = 1.0) -> tuple[March, Strike]:

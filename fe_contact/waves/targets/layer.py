@@ -18,7 +18,7 @@ from fe_contact.dynamics.body import Part
 from fe_contact.settings import RANGES, Given, WaveNumerics
 from fe_contact.targets.layer import matrix
 from fe_contact.waves.moving import BEYOND, SMALLEST, Moving, UnitBody, WaveSide
-from fe_contact.waves.plan import DEFAULTS, SPREAD, TRAVEL, Echoes, contact_time, placed
+from fe_contact.waves.plan import DEFAULTS, NO_ECHO, SPREAD, TRAVEL, Echoes, contact_time, placed
 from fe_contact.waves.targets.base import WaveTarget, too_fast
 from lumped.errors import BadInput, Fault
 from lumped.laws.mdr import ImpactScales
@@ -47,8 +47,7 @@ ROUGH: Given = {  # work: settings of a coarse body that only tells the contact'
 def plan(scene: Scene, given: Given) -> Plan:
     """Choose what ``given`` (checked settings) leaves open; the impact without inertia places mesh and steps.
 
-    Raises NotReached where even that does not come to an end, BadInput for a contact beyond its load curve, and for
-    steps that pass over its echoes.
+    Raises NotReached where even that does not come to an end, BadInput for a contact beyond its load curve.
     """
     check_compressible(scene)
     size = scales(scene, WaveNumerics(**DEFAULTS, **ROUGH))
@@ -89,7 +88,8 @@ def echoes(scene: Scene, size: ImpactScales) -> Echoes:
     left = 6.0 ** -math.log2(max(second / first, 1.0)) if first > 0.0 else 0.0
     left *= math.exp(-math.pi * _damping(material.young, 2.0 * math.pi / echo))
     left *= min(met / target.thickness, 1.0) ** (2 if shape.plane else 3)
-    return Echoes(contact_time(scene, size) / echo, density * speed * scene.velocity * first / size.peak_force * left)
+    swing = density * speed * scene.velocity * first / size.peak_force * left
+    return Echoes(contact_time(scene, size) / echo, swing) if swing > 0.0 else NO_ECHO
 
 
 def _damping(modulus: Relaxation, omega: float) -> float:
