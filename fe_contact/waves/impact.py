@@ -99,7 +99,8 @@ def record(moving: Moving, found: Motion, scene: Scene) -> March:
     depth, speed = np.array([(float(s.displacement[0]), float(s.velocity[0])) for s in found.samples]).T
     momentum = scene.reduced_mass * (scene.velocity - speed + scene.gravity * found.time)
     late = found.samples[-1].time - end  # in which nothing presses any more
-    depth[-1] -= late * (speed[-1] - 0.5 * scene.gravity * late)
+    fallen = late * float(speed[-1] - 0.5 * scene.gravity * late)
+    depth[-1] -= fallen
     touched = [s for s in pressed if s.force > 0.0]
     return March(
         time=time,
@@ -109,7 +110,7 @@ def record(moving: Moving, found: Motion, scene: Scene) -> March:
         radius=np.array([_radius(moving, s) for s in touched]),
         separated=separated,
         photograph=tuple,
-        energy=energies(moving, found, scene, rest),
+        energy=_before(energies(moving, found, scene, rest), fallen, scene.reduced_mass * scene.gravity),
         end_spread=spread,
         first_force=0.0,
         work=Work(
@@ -119,6 +120,12 @@ def record(moving: Moving, found: Motion, scene: Scene) -> March:
         ),
         dent=None if rest is None else rest.dent,
     )
+
+
+def _before(account: dict[str, float], fallen: float, weight: float) -> dict[str, float]:
+    """The account, J, before the striker has ``fallen`` by so much, m, under a ``weight``, N, and nothing else."""
+    given = weight * fallen
+    return balanced({**account, "in": account["in"] - given, "out": account["out"] - given})
 
 
 def _radius(moving: Moving, sample: Sample) -> float:

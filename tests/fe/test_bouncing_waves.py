@@ -147,7 +147,7 @@ def test_one_ledger_runs_through_contacts_and_flights() -> None:
         given = 0.5 * scene.mass * scene.velocity**2 + scene.mass * scene.gravity * last.depth[-1]
         assert len(bounces.followed.contacts) == 3
         assert abs(energy["residual"]) < 1e-9 * energy["in"]
-        assert energy["in"] == pytest.approx(given, rel=5e-3)  # counted to the end of the step that parts
+        assert energy["in"] == pytest.approx(given, rel=1e-6), "counted to the end, within a step"
         assert abs(energy["numerical"]) < 1e-2 * energy["radiated"]
         if material is not None:
             assert energy["out"] + energy["radiated"] == pytest.approx(energy["in"], rel=1e-3)
