@@ -9,6 +9,9 @@ A contact ends anywhere within a step, and a body that rings ends it sooner or l
 length of step leaves another share of itself of that, in which no order shows: the finer of two durations then errs by
 less than twice their distance.
 
+What a ball's far pole sends back meets at the contact all at once, in a pulse of the force so short that two settings
+may miss it alike: of its band, that two of them agree there says less.
+
 A march with waves as a curve: through fewer rows than steps, between which the contact's chatter averages out.
 
 Points of a mesh that stays begin and end their contact one by one, and a dashpot in parallel differentiates that. The
@@ -105,6 +108,11 @@ class WaveRuns(AnyRuns[WaveNumerics]):
         self.counted: Counted = uncounted  # told of every step, as the share of one on the largest body so far
         self._largest = 1
 
+    @property
+    def rings(self) -> bool:
+        """Whether waves of a ball come back to the contact from its far pole."""
+        return self._scene.geometry.striking is not None
+
     def _count(self, unknowns: int, steps: float) -> None:
         self._largest = max(self._largest, unknowns)
         self.counted(steps * unknowns / self._largest)
@@ -158,14 +166,15 @@ def _judged(runs: WaveRuns, number: int, numerics: WaveNumerics) -> Judged:
     coarse = min(cheap, mesh, key=attrgetter("elements_per_contact"))  # it is fine enough to tell of the far field
     far, farther = other_setting(coarse, "far_radius")
     own, trust = curve_of(contact.march, contact.strike, numerics), FRONTS if numerics.follows_echoes else 1.0
+    pulse = FRONTS if runs.rings else 1.0
     changes: dict[str, Causes] = {
         "mesh": (
-            Moved.between(curve(cheap), curve(mesh), trust * by_mesh),
+            Moved.between(curve(cheap), curve(mesh), trust * by_mesh, pulse=pulse),
             reading(contact.march, contact.strike, numerics),
         ),
         "penalty": (Moved.between(curve(cheap), curve(penalty), factor(ORDER["penalty"], stiffer)),),
         "time_step": (
-            EndMoved.between(curve(numerics), curve(half), trust * factor(ORDER["time_step"], False)),
+            EndMoved.between(curve(numerics), curve(half), trust * factor(ORDER["time_step"], False), pulse=pulse),
             Swung(own, SAFETY * numerics.swing, max(numerics.echoes, 1.0)),
         ),
         "far_field": (Moved.between(curve(coarse), curve(far), factor(ORDER["far_field"], farther)),),
@@ -173,11 +182,19 @@ def _judged(runs: WaveRuns, number: int, numerics: WaveNumerics) -> Judged:
     return own, changes
 
 
+@dataclass(frozen=True)
 class Moved(Variation):
     """A change of the motion at equal times, not at equal shares of the contact.
 
     What chatters at the end of a contact moves the time at which it ends, and hardly the speed after it.
+    ``pulse``: times what order one tells of the force, where it may have pulses that both settings miss.
     """
+
+    pulse: float = 1.0
+
+    def force(self, time: Array) -> Array:
+        """Error of the force at times, N."""
+        return np.asarray(self.pulse * super().force(time))
 
     @cached_property
     def velocity(self) -> float:

@@ -117,9 +117,8 @@ def test_an_entry_covers_its_own_setting_where_there_are_waves(cause: str, power
         return Curve.of(answer(given), STRIKE)
 
     contact = SimpleNamespace(march=answer(base), strike=STRIKE)
-    runs: Any = SimpleNamespace(
-        curve=curve, cheap=320, follow=lambda given: SimpleNamespace(contacts=[contact]), work=lambda: None
-    )
+    followed = SimpleNamespace(contacts=[contact])
+    runs: Any = SimpleNamespace(curve=curve, cheap=320, rings=False, follow=lambda given: followed, work=lambda: None)
     found = waves.certify(runs, base)
     errors = off(curve(0, base))
     for name in QUANTITIES:
