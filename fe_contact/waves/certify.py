@@ -7,7 +7,7 @@ back within the contact.
 
 A contact ends anywhere within a step, and a body that rings ends it sooner or later than its last forces say. Every
 length of step leaves another share of itself of that, in which no order shows: the finer of two durations then errs by
-less than twice their distance.
+less than twice their distance. Where a ball rings both may miss the same share of a step, about half of the finer one.
 
 What a ball's far pole sends back meets at the contact all at once, in a pulse of the force so short that two settings
 may miss it alike: of its band, that two of them agree there says less.
@@ -63,6 +63,7 @@ TRUSTED = 2  # of that
 # Times the error that order one or two tells: the front of an echo begins as the root of time, which leaves order 1/2.
 FRONTS = (2.0 ** ORDER["time_step"] - 1.0) / (math.sqrt(2.0) - 1.0)
 DEGREE, REACH = 3, 2  # of the polynomial through all steps so many rows to either side
+MISSED = 0.5 * SAFETY  # of a step, by which a ball that rings leaves sooner or later than both lengths of step say
 ROUNDS = 3  # refinements before giving up
 GROWTH = {
     "mesh": Growth(ORDER["mesh"], step=2**0.25, most=2.0, work=2.0),
@@ -166,7 +167,7 @@ def _judged(runs: WaveRuns, number: int, numerics: WaveNumerics) -> Judged:
     coarse = min(cheap, mesh, key=attrgetter("elements_per_contact"))  # it is fine enough to tell of the far field
     far, farther = other_setting(coarse, "far_radius")
     own, trust = curve_of(contact.march, contact.strike, numerics), FRONTS if numerics.follows_echoes else 1.0
-    pulse = FRONTS if runs.rings else 1.0
+    pulse, step = (FRONTS, _last_step(contact.march)) if runs.rings else (1.0, 0.0)
     changes: dict[str, Causes] = {
         "mesh": (
             Moved.between(curve(cheap), curve(mesh), trust * by_mesh, pulse=pulse),
@@ -174,12 +175,19 @@ def _judged(runs: WaveRuns, number: int, numerics: WaveNumerics) -> Judged:
         ),
         "penalty": (Moved.between(curve(cheap), curve(penalty), factor(ORDER["penalty"], stiffer)),),
         "time_step": (
-            EndMoved.between(curve(numerics), curve(half), trust * factor(ORDER["time_step"], False), pulse=pulse),
+            EndMoved.between(
+                curve(numerics), curve(half), trust * factor(ORDER["time_step"], False), pulse=pulse, step=step
+            ),
             Swung(own, SAFETY * numerics.swing, max(numerics.echoes, 1.0)),
         ),
         "far_field": (Moved.between(curve(coarse), curve(far), factor(ORDER["far_field"], farther)),),
     }
     return own, changes
+
+
+def _last_step(march: March) -> float:
+    """The last whole one before the end, s."""
+    return float(march.time[-2] - march.time[-3]) if len(march.time) > 2 else 0.0
 
 
 @dataclass(frozen=True)
@@ -213,14 +221,20 @@ class Moved(Variation):
         return impulse, curve.velocity(time, impulse)
 
 
+@dataclass(frozen=True)
 class EndMoved(Moved):
-    """The same by the length of the steps, of which the end of a contact knows no order; only where it is read."""
+    """The same by the length of the steps, of which the end of a contact knows no order; only where it is read.
+
+    ``step``, s: the last of the finer ones, where both lengths may miss the same share of it.
+    """
+
+    step: float = 0.0
 
     @cached_property
     def errors(self) -> dict[str, float]:
         """Error of every quantity, in its unit."""
         errors = super().errors
-        return errors | {"duration": errors["duration"] * UNORDERED / self.factor}
+        return errors | {"duration": max(errors["duration"] * UNORDERED / self.factor, MISSED * self.step)}
 
 
 @dataclass(frozen=True)

@@ -421,6 +421,18 @@ def test_what_a_far_pole_sends_back_is_in_the_band_though_all_coarse_settings_mi
     assert 0.01 * history.force.max() < missed < float(np.interp(time, history.time, history.force_error))
 
 
+@pytest.mark.tenth
+def test_steps_that_miss_the_same_share_of_the_last_one_do_not_agree_on_the_end_by_that() -> None:
+    """Equal elastic balls part later than steps of 1/104 and 1/52 say, by spectral elements on three meshes."""
+    material = {"law": "elastic", "E": 288595.117, "nu": 0.0, "density": 1465.906}
+    scene = collision((6.14037271e-3, 6.14037271e-3), 0.01, 0.82464218, material)
+    found = simulate(scene, "fe", {"tolerance": 0.01}).quantities["duration"]
+    known, apart = 6.7407e-3, 0.0038e-3
+    assert found.value is not None
+    assert found.error is not None
+    assert abs(found.value - known) + apart < found.error < 0.01 * known
+
+
 def side(seed: int, size: int, damped: bool) -> WaveSide:
     """Any body of so many degrees of freedom, every other one along its axis; two surface nodes at three points."""
     rng = np.random.default_rng(seed)

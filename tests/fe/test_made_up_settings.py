@@ -216,6 +216,12 @@ def test_an_end_that_longer_steps_move_errs_by_more_than_twice_that_whatever_is_
     assert end == other
 
 
+def test_two_lengths_of_step_that_agree_on_the_end_may_still_miss_half_a_step_of_it() -> None:
+    curve, step = Curve.of(march(STEPS, 0.0), STRIKE), 0.01
+    assert waves.EndMoved(curve, curve, 1.25).errors["duration"] == 0.0
+    assert 0.5 * step < waves.EndMoved(curve, curve, 1.25, step=step).errors["duration"] < step
+
+
 @pytest.mark.parametrize("fails", ["first", "second"])
 def test_a_setting_whose_run_fails_tells_nothing(fails: str) -> None:
     known = Curve.of(march(STEPS, 0.0), STRIKE)
