@@ -155,6 +155,21 @@ def test_one_ledger_runs_through_contacts_and_flights() -> None:
             assert energy["viscous"] > 0.2 * energy["in"]
 
 
+@pytest.mark.tenth
+def test_a_second_contact_is_as_deep_as_on_a_body_that_goes_on_for_ever() -> None:
+    """By spectral elements with explicit steps, on three meshes: far springs near by gave back more of the first."""
+    material = {
+        "law": "prony",
+        "E_inf": 5017333.663,
+        "E": [454871.2572, 1641838.723],
+        "tau": [8.907928e-6, 2.7665828e-4],
+    }
+    changes = {"striker.mass": 1.13766132e-3, "striker.velocity": 1.97255119, "model.gravity": 1238.965575}
+    found = thrown(material | {"nu": 0.3, "density": 1000.0}, **changes, **{"motion.end_time": 0.01})
+    second = fe_contact.run(found, tolerance=0.1).contacts[1]
+    assert abs(second["peak_depth"] - 4.0587e-4) + 0.0006e-4 < second["peak_depth_error"] < 4e-6
+
+
 def random_scene(rng: np.random.Generator) -> Scene:
     """Elastic or with a memory of a tenth to thirty contact times, in flights of two to a hundred of them."""
     young, nu, density = 10 ** rng.uniform(5, 7), rng.uniform(0.0, 0.48), 2000.0

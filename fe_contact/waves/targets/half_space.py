@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from fe_contact.plastic.core import YieldingCore
 
 NEAREST = 20.0  # contact radii: the far springs' own need
+NEAREST_AGAIN = 80.0  # the same where another contact begins on what they gave back of the one before
 # Growth of elements into the body, of one along the radius a unit distance: where several contacts follow each other,
 # the later ones begin on what the earlier ones left on its way.
 ONE, SEVERAL = 3.0, 1.5
@@ -121,7 +122,8 @@ def _far_radius(scene: Scene, contact_radius: float, duration: float) -> float:
     density = material.density or 1.0
     fastest = wave_speeds(material.nu)[0] * math.sqrt(modulus.glassy / density)
     travel = max(TRAVEL * fastest * duration, SPREAD * math.sqrt(modulus.viscosity * duration / density))
-    return min(max(travel / contact_radius, NEAREST), RANGES["far_radius"][1])
+    nearest = NEAREST if scene.motion.impacts == 1 else NEAREST_AGAIN
+    return min(max(travel / contact_radius, nearest), RANGES["far_radius"][1])
 
 
 def units(scene: Scene, numerics: WaveNumerics) -> list[UnitBody]:
