@@ -14,6 +14,7 @@ from lumped.numbers import Array, Real, gauss
 
 DOUBLINGS = 60  # of a contact radius: further than any accepted depth goes
 STEPS, LAST_STEP = 60, 1e-12  # of Newton's method; the step after that is rounding
+HALVED = 0.5  # work: of two steps ago, what a step of Newton's method may be: nearly all are much shorter
 
 
 class HalfSpaceCurve(LoadCurve):
@@ -84,21 +85,27 @@ class KnownByRadius(HalfSpaceCurve):
     def contact_radius(self, depth: ArrayLike) -> Real:
         """a with depth(a) = depth, m: Newton's steps, and the middle of the places around it where one leaves them.
 
-        From the logarithm of the depth to that of what is touched beyond the first: powers are straight there.
+        From the logarithm of the depth to that of what is touched beyond the first: powers are straight there. Where a
+        profile turns steep at once, steps go to and fro across the turn: one not half as long as that before the last
+        goes to the middle too.
         """
         asked, least = np.asarray(depth, dtype=float), self.least_radius
         wanted = asked[asked > 0.0]
         radius = self.wider(wanted)
         low, high = np.full_like(radius, least), radius
+        last = before_last = np.full_like(radius, np.inf)
         with np.errstate(all="ignore"):  # of an infinite depth, which a solver asks that has lost its way
             for _ in range(STEPS):
                 (reached, slope), before, beyond = self.depth_and_slope(radius), radius, radius - least
                 low, high = np.where(reached < wanted, radius, low), np.where(reached > wanted, radius, high)
                 radius = least + beyond * (wanted / reached) ** (reached / (beyond * slope))
                 # with nothing beyond, where the exponent is no number, it is the first touch to rounding
-                inside = ((radius >= low) & (radius <= high)) | (beyond == 0.0)
-                radius = np.where(inside, np.fmax(radius, least), 0.5 * (low + high))
-                if np.all(np.abs(radius - before) <= LAST_STEP * radius):
+                step = np.abs(radius - before)
+                good = (radius >= low) & (radius <= high) & (step <= HALVED * before_last)
+                good |= (step <= LAST_STEP * radius) | (beyond == 0.0)
+                radius = np.where(good, np.fmax(radius, least), 0.5 * (low + high))
+                before_last, last = last, np.abs(radius - before)
+                if np.all(last <= LAST_STEP * radius):
                     break
         found = np.full_like(asked, self.least_radius)
         found[asked > 0.0] = radius

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.integrate import quad
+from scipy.integrate import quad, trapezoid
 
 from lumped import BadInput, Scene, laws, simulate
 from lumped.load_curves import ConeCurve, Hertz, LayerCurve, LayerPunch, PointLayer, SneddonSphere
@@ -74,6 +74,18 @@ def test_a_few_looks_find_the_contact_radius_of_any_depth(shape: Shape, monkeypa
     seen = depths > 1e-9 * flat
     assert curve.depth(found[seen]) == pytest.approx(depths[seen], rel=1e-9 if flat else 1e-13)
     assert found[~seen] == pytest.approx(flat, rel=1e-4)
+
+
+def test_a_profile_that_turns_steep_at_once_has_the_contact_radius_of_its_depth() -> None:
+    """Newton's steps alone go to and fro across such a turn for ever, and the force was a hundred times too large."""
+    slopes, radii = np.array([0.01, 0.02, 0.2, 0.5, 0.6, 0.8, 1.2]), np.array([0, 0.1, 0.3, 0.305, 0.31, 0.5, 1, 3])
+    curve = Profile(tuple(radii), (0.0, *np.cumsum(slopes * np.diff(radii)))).load_curve
+    wide = np.linspace(0.05, 1.0, 40)
+    for depths in (curve.depth(wide), *curve.depth(wide)[:, np.newaxis]):
+        assert curve.depth(curve.contact_radius(depths)) == pytest.approx(depths, rel=1e-10)
+    # F = int 2 a dd
+    depths = np.linspace(0.005, 0.01, 2001)
+    assert np.diff(curve.force(depths[[0, -1]])) == pytest.approx(2.0 * trapezoid(curve.contact_radius(depths), depths))
 
 
 @pytest.mark.parametrize("shape", BENT, ids=lambda shape: shape.name)
