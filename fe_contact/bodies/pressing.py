@@ -25,6 +25,8 @@ from meshes.triangles import LEAST_BESIDE
 EDGE_WINDOW = 0.02  # the contact edge may lie this far from the node where the mesh is finest
 RESCALINGS = 60  # work: of the mesh, until the contact edge lies where it is finest
 EDGE_ORDER = 1.5  # of the force's error where the contact ends anywhere in an element
+REACH = 10.0  # of the depth: no surface that is pressed moves so far, nor does a gap as wide tell where contact ends
+NODEWISE_ORDER = 0.5  # of the force's error under a rim where nodes press one by one
 BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
 # The gap tells where contact ends up to this distance from the edge, in contact radii and in thicknesses of the body,
 # but for the nearest share of it.
@@ -173,7 +175,7 @@ class FixedStill(OnMesh):
     @property
     def mesh_order(self) -> float:
         """Less where the edge may lie anywhere in an element, at which the pressure has no slope."""
-        return EDGE_ORDER if self.indenter.shape.fixed_radius is None else np.inf
+        return EDGE_ORDER if self.indenter.shape.fixed_radius is None else rim_order(self.numerics)
 
     def press(self, depth: float, guess: float) -> Pressed:
         """Press to a depth, m; raises IndentationNotSettled, ContactTooWide."""
@@ -227,7 +229,8 @@ class BodyStill:
     @property
     def mesh_order(self) -> float:
         """Less where the edge may lie anywhere in an element; a rim is a node."""
-        return EDGE_ORDER if self.indenter.target.fixed_radius(self.indenter.shape) is None else np.inf
+        fixed = self.indenter.target.fixed_radius(self.indenter.shape)
+        return EDGE_ORDER if fixed is None else rim_order(self.numerics)
 
     def press(self, depth: float, guess: float) -> Pressed:
         """Press to a depth, m; raises IndentationNotSettled, or ContactTooWide where a contact leaves the fine mesh."""
@@ -235,7 +238,7 @@ class BodyStill:
         fixed = target.fixed_radius(shape)
         overlap = target.overlap(self.indenter.profile, self.places, depth)
         penalty = self.numerics.penalty * self.scale / guess * (1.0 if fixed is None else STIFFER)
-        problem = ContactProblem(self.surface, np.maximum(overlap, -BEYOND * self.scale), penalty)
+        problem = ContactProblem(self.surface, in_reach(overlap), penalty)
         enforcement = ENFORCEMENTS.get(self.numerics.enforcement)
         solution = enforcement.enforce(problem, np.abs(self.places) < guess)
         gap, height = -solution.signed_pressure, target.lead * depth - overlap
@@ -253,9 +256,24 @@ def _enforced(
 ) -> tuple[ContactSolution, int]:
     """The contact problem on the mesh scaled by ``scale``, m; and how many solves it took."""
     enforcement = ENFORCEMENTS.get(numerics.enforcement)
-    free, yielding = np.maximum(overlap, -BEYOND * scale), surface.operator.yielding
-    problem = ContactProblem(surface.pressed, free, numerics.penalty, yielding)
+    problem = ContactProblem(surface.pressed, in_reach(overlap), numerics.penalty, surface.operator.yielding)
     return enforcement.enforce(problem, touching), enforcement.solves
+
+
+def rim_order(numerics: Numerics) -> float:
+    """The most that the mesh's order can be under a rim, where the pressure grows like a root without end.
+
+    A pressure of nodes that press one by one misses some of the last facet's, which carries as a root of its size.
+    """
+    return NODEWISE_ORDER if ENFORCEMENTS.get(numerics.enforcement).nodewise else np.inf
+
+
+def in_reach(overlap: Array) -> Array:
+    """An overlap, (q,), m, whose gaps are none that is wider than any surface moves: they stay open, no less.
+
+    Where heights rise by powers of ten within a facet, or a rim ends them, a mean over the facet would see them alone.
+    """
+    return np.maximum(overlap, -REACH * overlap.max())
 
 
 def contact_end(

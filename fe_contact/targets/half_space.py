@@ -26,7 +26,7 @@ from fe_contact.assembly.operators import (
     made,
     system_matrix,
 )
-from fe_contact.assembly.surface import flat, lagrange
+from fe_contact.assembly.surface import face, flat, lagrange
 from fe_contact.bodies.pressing import (
     FINITE_MARGIN,
     FINITE_REFINEMENT,
@@ -112,7 +112,7 @@ def _rimmed_operator(poisson: float, elements: float, order: int, far_radius: fl
     """Condensed for unit radius."""
     basis = basis_on(made(meshes.layer_under_rim, elements, far_radius, far_radius), order)
     matrix, fixed = system_matrix(basis, poisson, ENDS), held(basis, along=("axis",), across=())
-    return condensed(basis, matrix, fixed, poisson, flat(basis)).operator
+    return condensed(basis, matrix, fixed, poisson, face(basis, 1.0)).operator
 
 
 def _plane_still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:

@@ -16,7 +16,7 @@ from fe_contact.assembly.cache import Recipe, cached
 from fe_contact.assembly.far_field import on_boundary
 from fe_contact.assembly.forms import Array, Basis, Matrix, elastic, stiffness
 from fe_contact.assembly.operators import ElasticBody, SolidMesh, basis_on, boundary, made
-from fe_contact.assembly.surface import flat
+from fe_contact.assembly.surface import face, flat
 from fe_contact.bodies.pressing import (
     FINITE_MARGIN,
     FINITE_REFINEMENT,
@@ -82,7 +82,8 @@ def _body(sizes: Sizes, order: int, bonded: bool, plane: bool) -> ElasticBody:
     """In units of the reference radius."""
     basis = basis_on(_mesh(*sizes), order)
     fixed = held(basis, along=("axis", "side", "base") if bonded else ("axis",), across=("base",))
-    return ElasticBody(basis, partial(matrix, basis, plane), fixed, flat(basis, 2 if plane else 3))
+    pressed = face(basis, 1.0) if sizes[-1] is None else flat(basis, 2 if plane else 3)
+    return ElasticBody(basis, partial(matrix, basis, plane), fixed, pressed)
 
 
 def _mesh(elements: float, thickness: float, width: float, ends: tuple[float, float, float] | None) -> MeshTri:
