@@ -27,6 +27,8 @@ RESCALINGS = 60  # work: of the mesh, until the contact edge lies where it is fi
 EDGE_ORDER = 1.5  # of the force's error where the contact ends anywhere in an element
 REACH = 10.0  # of the depth: no surface that is pressed moves so far, nor does a gap as wide tell where contact ends
 NODEWISE_ORDER = 0.5  # of the force's error under a rim where nodes press one by one
+# of the force's error where a contact is hardly wider than a flat end, whose radius over the contact's is at least so
+BESIDE_ORDER, BESIDE_RIM = 1.0, 0.9
 BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
 # The gap tells where contact ends up to this distance from the edge, in contact radii and in thicknesses of the body,
 # but for the nearest share of it.
@@ -138,9 +140,22 @@ class OnMesh:
 
 @dataclass(frozen=True)
 class ScaledStill(OnMesh):
-    """A body without a length of its own: the mesh is scaled until the contact edge lies in its finest elements."""
+    """A body without a length of its own: the mesh is scaled until the contact edge lies in its finest elements.
 
-    mesh_order: ClassVar[float] = np.inf  # that of the elements: the edge is a node but for little
+    ``least``: about the smallest contact radius, m.
+    """
+
+    least: float
+
+    @property
+    def mesh_order(self) -> float:
+        """That of the elements, for the edge is a node but for little; less close beside a flat end's rim.
+
+        There the pressure grows nearly as under a punch, whose rim costs an order one or, node by node, a half.
+        """
+        if self.indenter.profile.flat_radius < BESIDE_RIM * self.least:
+            return np.inf
+        return min(BESIDE_ORDER, rim_order(self.numerics))
 
     def press(self, depth: float, guess: float) -> Pressed:
         """Press to a depth, m. Raises IndentationNotSettled."""

@@ -75,7 +75,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
         return _plane_still(indenter, radii, numerics)
     if indenter.shape.fixed_radius is not None:
         return under_rim(indenter, indenter.shape.fixed_radius, numerics)
-    return ScaledStill(surface(indenter.material.nu, numerics), indenter, numerics)
+    return ScaledStill(surface(indenter.material.nu, numerics), indenter, numerics, float(radii.min()))
 
 
 @cached_surface

@@ -21,7 +21,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     assert isinstance(indenter.target, SphereTarget)
     if indenter.target.support is not None:
         return _round.still(indenter, radii, numerics)
-    return ScaledStill(half_space.surface(indenter.material.nu, numerics), indenter, numerics)
+    return ScaledStill(half_space.surface(indenter.material.nu, numerics), indenter, numerics, float(radii.min()))
 
 
 def struck(geometry: Geometry, numerics: Numerics) -> Deformable:

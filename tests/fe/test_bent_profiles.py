@@ -115,6 +115,26 @@ def test_a_flat_end_with_a_narrow_edge_is_pressed_within_its_bars(
         assert np.all(np.abs(found.force - known) <= found.force_error + departs), (pressed, tolerance)
 
 
+@pytest.mark.parametrize(
+    ("edge", "nu", "given"),
+    [
+        (1e-5, -0.9, {"tolerance": 1e-3, "enforcement": "augmented"}),
+        (3e-3, -0.9, {"tolerance": 0.1, "elements_per_contact": 6.0, "penalty": 1e5}),
+        (3e-3, 0.45, {"tolerance": 0.1, "elements_per_contact": 6.0, "penalty": 1e5}),
+    ],
+)
+def test_an_edge_too_narrow_to_be_resolved_has_the_bar_of_a_rim(
+    edge: float, nu: float, given: dict[str, float | str]
+) -> None:
+    """Where contact ends beside a flat end the pressure grows nearly without end: meshes err by their size there."""
+    depth = 1e-4 if edge == 1e-5 else 1e-2
+    indenter = Indenter(RoundedPunch(1.0, edge), Material(Relaxation(1.0), nu))
+    pressed = indent(indenter, (depth,), given)
+    curve = indenter.target.load_curve(indenter.profile, nu)
+    exact = indenter.modulus(False) * float(curve.force(depth))
+    assert abs(pressed.force[0] - exact) <= pressed.force_error[0]
+
+
 @pytest.mark.tenth
 @pytest.mark.parametrize("target", [HalfSpace(), Layer(0.01, "bonded")])
 def test_a_relaxing_impact_by_a_narrow_edge_takes_few_iterations_a_step(target: HalfSpace | Layer) -> None:
