@@ -104,8 +104,8 @@ FINER_STEPS = "an earlier motion.end_time, or more numerics.steps"  # cure where
 class IndentationNotSettled(NotReached):
     """The contact problem at one depth did not settle."""
 
-    def __init__(self, depth: float) -> None:
-        super().__init__(f"contact at depth {depth:.3g} m did not settle; cure: a lower numerics.penalty")
+    def __init__(self, depth: float, cure: str = "a lower numerics.penalty") -> None:
+        super().__init__(f"contact at depth {depth:.3g} m did not settle; cure: {cure}")
 
 
 class ContactTooWide(NotReached):

@@ -12,7 +12,7 @@ import pytest
 
 from fe_contact import indentation
 from fe_contact.bodies.pressing import PressedDepths
-from fe_contact.errors import BodyTooThin, ContactTooWide
+from fe_contact.errors import BodyTooThin, ContactTooWide, IndentationNotSettled
 from fe_contact.indentation import CAUSES, FEWEST, Indenting, _accompanied, expected, indent, press, settings
 from fe_contact.settings import Numerics, tolerance_of
 from lumped import BadInput, Material, Relaxation
@@ -173,6 +173,14 @@ def test_no_gap_beyond_a_rim_presses_where_none_may_overlap(shape: Shape, target
     by_penalty = indent(indenter, (0.01, 0.1), {"tolerance": 1e-3})
     assert np.all(np.abs(exact.force - by_penalty.force) <= exact.force_error + by_penalty.force_error)
     assert np.all(exact.force_error <= 0.1 * exact.force)
+
+
+def test_updates_that_do_not_settle_ask_for_the_stiffer_penalty_that_does() -> None:
+    indenter = Indenter(Punch(1.0), Material(Relaxation(1.0), 0.3))
+    given = {"tolerance": 0.1, "enforcement": "augmented"}
+    with pytest.raises(IndentationNotSettled, match=r"a higher numerics\.penalty"):
+        indent(indenter, (0.1,), {**given, "penalty": 100.0})
+    assert np.all(indent(indenter, (0.1,), {**given, "penalty": 3e4}).force > 0.0)
 
 
 @pytest.mark.family
