@@ -271,7 +271,9 @@ def _enforced(
 ) -> tuple[ContactSolution, int]:
     """The contact problem on the mesh scaled by ``scale``, m; and how many solves it took."""
     enforcement = ENFORCEMENTS.get(numerics.enforcement)
-    problem = ContactProblem(surface.pressed, in_reach(overlap), numerics.penalty, surface.operator.yielding)
+    operator = surface.operator
+    free = in_reach(overlap) if operator.watched is None else np.maximum(overlap, -BEYOND * scale)  # a datum comes up
+    problem = ContactProblem(surface.pressed, free, numerics.penalty, operator.yielding)
     return enforcement.enforce(problem, touching), enforcement.solves
 
 
