@@ -237,7 +237,16 @@ class _NearPeak:
         spread = np.maximum.accumulate(sides.max(axis=0)) - np.minimum.accumulate(sides.min(axis=0))
         shifts = np.sqrt(2.0 * spread[:0:-1] / bent)  # the farthest that what they differ by within each reach allows
         last = np.append(shifts[:-1] > reaches[1:], True).argmax()  # the next reach would be too short for it
-        return max(min(float(shifts[last]), self.whole), least)
+        return max(min(float(shifts[last]), self.whole), least, self._as_high(force[AROUND.size :]))
+
+    def _as_high(self, force: Array) -> float:
+        """How far on one side the force is as high as at the peak but for its last digit, s: `force` at the reaches.
+
+        A peak is flatter on one side where a law yields until the motion turns and then gives way.
+        """
+        sides = force.reshape(2, -1)
+        level = sides[:, :-1].max(axis=0) >= (1.0 - np.finfo(float).eps) * sides[0, -1]
+        return float(self.reaches[level.argmax()]) if level.any() else 0.0
 
 
 def _count(share: float) -> int:
