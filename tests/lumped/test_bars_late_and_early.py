@@ -142,3 +142,21 @@ def test_what_is_cut_soon_after_touch_has_a_bar_of_its_own() -> None:
     s, rate, _ = solved.sol(places)
     rows = np.flatnonzero(time > 1e-6 * end)
     held(found, k * (s**3 + 1.5 * damping * s * rate)[rows], rows)
+
+
+def test_flights_however_long_leave_every_impact_its_restitution() -> None:
+    """Of a flat punch, whose load is straight: nothing goes by the clock, rounded to more than a share of a contact."""
+    scene = Scene.from_dict(
+        {
+            "striker": {"shape": "punch", "radius": 0.01, "mass": 1.0, "velocity": 0.1},
+            "target": {"shape": "half_space", "material": {"law": "sls", "E0": 1e6, "R1": 0.5, "R2": 0.01, "nu": 0.45}},
+            "model": {"gravity": 1e-9},
+            "motion": {"impacts": 4},
+            "law": {"name": "correspondence", "memory": "reset"},
+        },
+        "punch.toml",
+    )
+    found = laws.get("correspondence").of(scene).simulate(scene, 1e-2)
+    speeds = np.array([one["velocity"] for one in found.contacts])
+    assert found.contacts[-1]["start"] > 1e9 * (found.quantities["duration"].value or math.inf)
+    assert speeds[1:] / speeds[:-1] == pytest.approx(found.quantities["restitution"].value, rel=1e-9)

@@ -29,7 +29,7 @@ SMALL = 1e-11
 ROUNDING = 1e-14
 MOST_STEPS = 5000  # work: time steps of one phase
 LOCATIONS = 60  # work: trials of where in a step an event lies
-PRECISE = 1e-14  # of the time reached: where an event lies
+PRECISE = 1e-14  # rounding: of the time since a stage began, where in it an event lies; of the last time
 # Rounding: of a step's length, by which it still changes where it ends with an event; so much of the change before is
 # left of what falls no more.
 ROUNDED, NO_BETTER = 1e-6, 0.5
@@ -154,7 +154,7 @@ class PointMarch:
         for _ in range(MOST_STEPS):
             length = min(length, self.until - now)
             nodes = NODES.graded(power, (now - time) / length) if power > 1 else NODES
-            step, event = self._until_event(self._solved(state, length, guess * nodes.pace, nodes), now)
+            step, event = self._until_event(self._solved(state, length, guess * nodes.pace, nodes), now - time)
             if step is None:
                 length *= SHORTEST
                 continue
@@ -185,13 +185,16 @@ class PointMarch:
         step_done()
         return solved(self.law, self.stage, self.bodies, state, length, guess, nodes)
 
-    def _until_event(self, step: Step | None, now: float, known: str = "") -> tuple[Step | None, str | None]:
-        """The step, cut short at its first event; and at one before that which only the shorter step shows."""
+    def _until_event(self, step: Step | None, since: float, known: str = "") -> tuple[Step | None, str | None]:
+        """The step, cut short at its first event; and at one before that which only the shorter step shows.
+
+        It begins ``since`` s after its stage.
+        """
         event = None if step is None else self._first(step, known)
         if step is None or event is None:
             return step, known or None
-        located = self._located(step, event, now)
-        return (located, event) if known else self._until_event(located, now, event)
+        located = self._located(step, event, since)
+        return (located, event) if known else self._until_event(located, since, event)
 
     def _first(self, step: Step, beside: str = "") -> str | None:
         """The event that happens first within a step, `beside` one that is known."""
@@ -200,10 +203,11 @@ class PointMarch:
         found = {name: int(place[0]) for name, place in places.items() if place.size}
         return min(found, key=lambda name: found[name]) if found else None
 
-    def _located(self, step: Step, name: str, now: float) -> Step | None:
+    def _located(self, step: Step, name: str, since: float) -> Step | None:
         """The step that ends where the event happens: Newton's method on its length, kept between what brackets it.
 
-        Or one near it that is too rough anyway.
+        Or one near it that is too rough anyway. How late it is by the clock does not matter: at a turn the rate that is
+        left is dropped.
         """
         event = self.events[name]
         low, high, length = 0.0, 2.0 * step.length, _expected(step, event.value(step))
@@ -225,7 +229,7 @@ class PointMarch:
             following = length - at / slope if slope < 0.0 else low
             change = abs(following - length)
             rounded = change <= ROUNDED * length and change > (LINEAR if event.rough else NO_BETTER) * before
-            if at == 0.0 or rounded or change <= PRECISE * (now + length):
+            if at == 0.0 or rounded or change <= PRECISE * (since + length):
                 return trial
             before = change
             previous, length = (length, at), following if low < following < high else 0.5 * (low + high)
