@@ -412,6 +412,7 @@ def test_every_setting_of_waves_is_told_by_the_cheapest_runs_that_know_it(
     monkeypatch.setattr(certify, "reading", lambda *of: of)
     runs: Any = SimpleNamespace(
         cheap=72,
+        rings=False,
         follow=lambda one: SimpleNamespace(contacts=[None, contact]),
         curve=lambda number, one: asked.append((number, one)) or one,
     )

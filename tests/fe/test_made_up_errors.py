@@ -811,6 +811,7 @@ def test_bars_of_waves_hold_what_falls_with_the_order_of_its_cause(
     contact = SimpleNamespace(march=None, strike=STRIKE)
     runs: Any = SimpleNamespace(
         follow=lambda chosen: SimpleNamespace(contacts=[contact]),
+        rings=False,
         curve=lambda number, chosen: made_up(STEPS, lambda share: np.full_like(share, off(chosen))),
         cheap=80,
     )
