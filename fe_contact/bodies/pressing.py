@@ -25,7 +25,7 @@ from meshes.triangles import LEAST_BESIDE
 EDGE_WINDOW = 0.02  # the contact edge may lie this far from the node where the mesh is finest
 RESCALINGS = 60  # work: of the mesh, until the contact edge lies where it is finest
 EDGE_ORDER = 1.5  # of the force's error where the contact ends anywhere in an element
-REACH = 10.0  # of the depth: no surface that is pressed moves so far, nor does a gap as wide tell where contact ends
+REACH = 30.0  # of the depth: no surface that is pressed moves so far, nor does a gap as wide tell where contact ends
 NODEWISE_ORDER = 0.5  # of the force's error under a rim where nodes press one by one
 # of the force's error where a contact is hardly wider than a flat end, whose radius over the contact's is at least so
 BESIDE_ORDER, BESIDE_RIM = 1.0, 0.9

@@ -48,7 +48,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     rim, profile = indenter.shape.fixed_radius, indenter.profile
     zone = Zone.of(radii, flat=profile.flat_radius) if rim is None else Zone(rim, 1.0)
     refinement = LINE_REFINEMENT if indenter.shape.plane else REFINEMENT
-    thickness, body = _meshed(indenter.geometry, zone, refinement, numerics)
+    thickness, body = _meshed(indenter.geometry, zone, refinement, numerics, rim is not None)
     surface = on_mesh(body, indenter.material.nu)
     return FixedStill(surface, indenter, numerics, zone.reference, zone.reference, thickness)
 
@@ -67,22 +67,27 @@ def meshed(geometry: Geometry, numerics: Numerics) -> Recipe[ElasticBody]:
     return _meshed(geometry, zone, STRUCK_REFINEMENT, numerics)[1]
 
 
-def _meshed(geometry: Geometry, zone: Zone, refinement: float, numerics: Numerics) -> tuple[float, Recipe[ElasticBody]]:
-    """Thickness over the radius of a zone, and the layer in its units; ``refinement``: elements over the usual."""
+def _meshed(
+    geometry: Geometry, zone: Zone, refinement: float, numerics: Numerics, alone: bool = False
+) -> tuple[float, Recipe[ElasticBody]]:
+    """Thickness over the radius of a zone, and the layer in its units; ``refinement``: elements over the usual.
+
+    ``alone``: whether nothing beyond a rim is ever pressed.
+    """
     target, rim = geometry.target, geometry.shape.fixed_radius is not None
     assert isinstance(target, Layer)
     thickness = thickness_over(zone.reference, target.thickness)
     elements, width = refinement * numerics.elements_per_contact, SIDES * numerics.far_radius * thickness
     sizes = (elements, thickness, width, None if rim else (zone.smallest, zone.flat, zone.beside))
-    return thickness, _body.recipe(sizes, numerics.order, target.base == "bonded", geometry.shape.plane)
+    return thickness, _body.recipe(sizes, numerics.order, target.base == "bonded", geometry.shape.plane, alone)
 
 
 @cached
-def _body(sizes: Sizes, order: int, bonded: bool, plane: bool) -> ElasticBody:
-    """In units of the reference radius."""
+def _body(sizes: Sizes, order: int, bonded: bool, plane: bool, alone: bool = False) -> ElasticBody:
+    """In units of the reference radius; ``alone``: nothing beyond it is ever pressed."""
     basis = basis_on(_mesh(*sizes), order)
     fixed = held(basis, along=("axis", "side", "base") if bonded else ("axis",), across=("base",))
-    pressed = face(basis, 1.0) if sizes[-1] is None else flat(basis, 2 if plane else 3)
+    pressed = face(basis, 1.0) if alone else flat(basis, 2 if plane else 3)
     return ElasticBody(basis, partial(matrix, basis, plane), fixed, pressed)
 
 
