@@ -298,7 +298,7 @@ def in_reach(overlap: Array) -> Array:
 
     Where heights rise by powers of ten within a facet, or a rim ends them, a mean over the facet would see them alone.
     """
-    return np.asarray(np.maximum(overlap, -REACH * overlap.max()))
+    return np.asarray(np.maximum(overlap, -REACH * abs(overlap.max())))
 
 
 def contact_end(

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from fe_contact import indentation
-from fe_contact.bodies.pressing import PressedDepths
+from fe_contact.bodies.pressing import PressedDepths, in_reach
 from fe_contact.errors import BodyTooThin, ContactTooWide, IndentationNotSettled
 from fe_contact.indentation import CAUSES, FEWEST, Indenting, _accompanied, expected, indent, press, settings
 from fe_contact.settings import Numerics, tolerance_of
@@ -173,6 +173,11 @@ def test_no_gap_beyond_a_rim_presses_where_none_may_overlap(shape: Shape, target
     by_penalty = indent(indenter, (0.01, 0.1), {"tolerance": 1e-3})
     assert np.all(np.abs(exact.force - by_penalty.force) <= exact.force_error + by_penalty.force_error)
     assert np.all(exact.force_error <= 0.1 * exact.force)
+
+
+def test_a_gap_everywhere_stays_one() -> None:
+    """Of a contact that lies between the points of a mesh: nothing may press there."""
+    assert in_reach(np.array([-1.0, -2.0, -100.0])).tolist() == [-1.0, -2.0, -30.0]
 
 
 def test_updates_that_do_not_settle_ask_for_the_stiffer_penalty_that_does() -> None:
