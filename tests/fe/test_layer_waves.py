@@ -171,6 +171,13 @@ def test_steps_tell_the_echoes_of_a_thin_layer_or_they_stand_in_the_bar() -> Non
     assert layer.plan(Scene.load("polymer-layer-waves"), {}).numerics.swing < 1e-6, "a ball's 240 come one by one"
 
 
+def test_a_dashpot_alone_sends_no_echo() -> None:
+    material = {"law": "operators", "p": [1.0], "q": [0.0, 3000.0], "nu": 0.3, "density": 1000.0}
+    scene = Scene.load("polymer-layer-waves", {"target.material": material, "motion.end_time": 0.01})
+    planned = layer.plan(scene, {"tolerance": 0.1}).numerics
+    assert (planned.echoes, planned.swing) == (0.0, 0.0)
+
+
 @pytest.mark.tenth
 @pytest.mark.parametrize(
     ("exponent", "heavier", "given", "followed"),

@@ -77,8 +77,10 @@ def echoes(scene: Scene, size: ImpactScales) -> Echoes:
     """
     shape, material, target = scene.profile, scene.geometry.material, scene.target
     assert isinstance(target, Layer)
-    density = material.density or 1.0
-    speed = math.sqrt(material.confined_modulus().glassy / density)
+    confined, density = material.confined_modulus(), material.density or 1.0
+    if confined.glassy == 0.0:  # a dashpot alone sends no wave
+        return NO_ECHO
+    speed = math.sqrt(confined.glassy / density)
     echo = 2.0 * target.thickness / speed
     radii = np.linspace(0.0, SPARE * size.contact_radius, PLACES)
     areas = 2.0 * radii * shape.total if shape.plane else math.pi * radii**2
@@ -86,18 +88,11 @@ def echoes(scene: Scene, size: ImpactScales) -> Echoes:
     met = float(np.interp(depths[0], shape.height(radii), radii))
     first, second = np.interp(depths, shape.height(radii), areas).tolist()
     left = 6.0 ** -math.log2(max(second / first, 1.0)) if first > 0.0 else 0.0
-    left *= math.exp(-math.pi * _damping(material.young, 2.0 * math.pi / echo))
+    modulus = complex(confined.operational(2.0j * math.pi / echo))
+    left *= math.exp(-math.pi * modulus.imag / modulus.real)
     left *= min(met / target.thickness, 1.0) ** (2 if shape.plane else 3)
     swing = density * speed * scene.velocity * first / size.peak_force * left
     return Echoes(contact_time(scene, size) / echo, swing) if swing > 0.0 else NO_ECHO
-
-
-def _damping(modulus: Relaxation, omega: float) -> float:
-    """Loss over storage modulus of a vibration of so many radians a second."""
-    turned = omega * np.asarray(modulus.times)
-    branches = np.asarray(modulus.moduli) * turned / (1.0 + turned**2)
-    storage = modulus.equilibrium + float((branches * turned).sum())
-    return (float(branches.sum()) + omega * modulus.viscosity) / storage
 
 
 def _stiffness(scene: Scene, size: ImpactScales) -> float:
