@@ -19,7 +19,6 @@ from meshes.triangles import (
     distance,
     elements_checked,
     filled,
-    flat_checked,
     larger,
     smaller,
     tagged,
@@ -108,7 +107,7 @@ def half_space_for_waves(
     within = smaller(larger("x", repr(low)), repr(ZONE))
     inward = most * min(1.0 / elements, OF_WAVE_GROWTH)
     size = f"{within}/{at_surface!r}+{inward!r}*(Fabs(y)+{beyond('x', ZONE)})"
-    return _quarter(beside_flat(size, at_surface, *flat_checked(flat, beside)), ZONE, far)
+    return _quarter(beside_flat(size, at_surface, flat, beside), ZONE, far)
 
 
 def _quarter(size: str, node: float, far_radius: float) -> MeshTri:

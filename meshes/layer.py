@@ -14,7 +14,6 @@ from meshes.triangles import (
     checked,
     distance,
     elements_checked,
-    flat_checked,
     larger,
     polygon,
     smaller,
@@ -67,7 +66,7 @@ def layer(
     n, low, thick, wide = _checked(elements_per_radius, smallest, thickness, width)
     growth, largest = min(GROWTH / n, LARGEST_GROWTH), min(LARGEST / n, COARSEST)
     size = _sizes(n, low, thick, growth, largest)
-    return _rectangle(beside_flat(size, n, *flat_checked(flat, beside)), ZONE, thick, wide)
+    return _rectangle(beside_flat(size, n, flat, beside), ZONE, thick, wide)
 
 
 def layer_for_waves(

@@ -27,7 +27,7 @@ MOST_NODES = 40_000  # some five seconds of gmsh, in which it answers to nothing
 ON_BOUNDARY = 0.25  # of them: as long again, for these take time by the square of their number
 PER_AREA = 2 / 3**0.5  # nodes of equal triangles of size h a square h
 DIGITS = 10  # of sizes: a mesh is to be the same whatever unit or machine made the sixteenth one
-BESIDE_RIM = 5.0  # element size over the distance from the rim of a flat end, for one element along the radius
+BESIDE_GROWTH = 5.0  # element size over the distance from the rim of a flat end, for one element along the radius
 LEAST_BESIDE = 1e-4  # over the largest contact: nearer to the rim of a flat end it is as good as sharp
 COARSE = 1.5  # sides of a cell over the size of the elements in it, at most: a finer look hardly changes the sum
 
@@ -212,20 +212,14 @@ def distance(x: float, y: float) -> str:
 def beside_flat(size: str, elements: float, flat: float, beside: float) -> str:
     """No larger than in proportion to the distance from the rim (flat, 0) of a flat end, or from as little ``beside``.
 
-    So all contacts are resolved alike that end so near to it, where their pressure is steep; a size of 0 has no rim.
+    So all contacts are resolved alike that end so near to it, where their pressure is steep; an end of 0 has no rim.
+    Raises MeshError for lengths out of their ranges.
     """
-    if flat == 0.0:
+    rim = checked("radius of the flat end over the largest contact", flat, 0.0, 1.0)
+    nearest = checked("distance of the smallest contact from it", beside, LEAST_BESIDE, 1.0)
+    if rim == 0.0:
         return size
-    share = min(BESIDE_RIM / elements, 1.0)
-    return smaller(size, f"{share!r}*({beside!r}+{distance(flat, 0.0)})")
-
-
-def flat_checked(flat: float, beside: float) -> tuple[float, float]:
-    """Within their ranges. Raises MeshError."""
-    return (
-        checked("radius of the flat end over the largest contact", flat, 0.0, 1.0),
-        checked("distance of the smallest contact from it", beside, LEAST_BESIDE, 1.0),
-    )
+    return smaller(size, f"{min(BESIDE_GROWTH / elements, 1.0)!r}*({nearest!r}+{distance(rim, 0.0)})")
 
 
 def elements_checked(along: str, value: float, low: float, high: float) -> float:

@@ -84,7 +84,7 @@ def _meshed(
 
 @cached
 def _body(sizes: Sizes, order: int, bonded: bool, plane: bool, alone: bool = False) -> ElasticBody:
-    """In units of the reference radius; ``alone``: nothing beyond it is ever pressed."""
+    """In units of the reference radius, that of a rim where nothing beyond it is ever pressed: ``alone``."""
     basis = basis_on(_mesh(*sizes), order)
     fixed = held(basis, along=("axis", "side", "base") if bonded else ("axis",), across=("base",))
     pressed = face(basis, 1.0) if alone else flat(basis, 2 if plane else 3)
