@@ -24,6 +24,7 @@ from fe_contact.plastic import indent as plastic
 from fe_contact.progress import Count, Counted, Progress, silent, uncounted
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics, check_kind, tolerance_of
 from fe_contact.solids import pressing as solids
+from fe_contact.solids import sharp_rim
 from fe_contact.targets.base import TARGETS
 from fe_contact.threads import one_thread
 from lumped.errors import BadInput, Fault
@@ -81,6 +82,8 @@ def indent(
         _check_digits(elastic)
         if indenter.model.finite:
             solids.check_large(indenter.source, indenter.geometry, indenter.model, numerics.enforcement)
+            if indenter.geometry.sharp_rim:
+                return sharp_rim.narrowed(indenter, numerics.tolerance, _with_edge(depths, given, instant, progress))
         way = Indenting(elastic, depth, expected(elastic, depth, numerics), frozenset(given) - {"tolerance"}, progress)
         found, _ = refine(way, numerics)
         base, budget, numerics = found.base, found.budget, found.numerics
@@ -102,6 +105,11 @@ def indent(
         timing=clock.read(),
         work=base.work,
     )
+
+
+def _with_edge(depths: tuple[float, ...], given: Given, instant: bool, progress: Progress) -> sharp_rim.Press:
+    """How an indenter whose rim is rounded off is pressed."""
+    return lambda one, tolerance: indent(one, depths, {**given, "tolerance": tolerance}, instant, progress)
 
 
 @dataclass(frozen=True, eq=False)
@@ -256,20 +264,21 @@ def expected(indenter: Indenter, depth: Array, numerics: Numerics) -> Array:
     """Contact radii which the meshes are made for, m, shape (n,); they enter no value.
 
     Of a body without a length of its own by its exact curve; else where the undeformed surfaces overlap, times what a
-    coarse mesh finds of it at the extreme depths.
+    coarse mesh finds of it at the extreme depths, both counted from the end of what is flat.
     """
     if not indenter.target.has_length:
         return np.asarray(indenter.target.load_curve(indenter.profile, indenter.material.nu).contact_radius(depth))
     overlapping = _overlapping(indenter, depth)
     if indenter.target.fixed_radius(indenter.shape) is not None:
         return overlapping
-    ends = [int(depth.argmin()), int(depth.argmax())]
-    coarse = numerics.varied(elements_per_contact=SCOUTING, order=SCOUTING_ORDER)
-    reach = overlapping[ends] * np.array([LEAST_SHARE, LARGEST_SHARE])
+    ends, flat = [int(depth.argmin()), int(depth.argmax())], indenter.profile.flat_radius
+    coarse, beyond = numerics.varied(elements_per_contact=SCOUTING, order=SCOUTING_ORDER), overlapping - flat
+    reach = flat + beyond[ends] * np.array([LEAST_SHARE, LARGEST_SHARE])
     body: Still = TARGETS.get(indenter.target.name).still(indenter, reach, coarse)
-    found = [body.press(float(depth[i]), float(overlapping[i])).contact_radius for i in ends]
-    share = np.interp(np.log(depth), np.log(depth[ends]), np.log(found / overlapping[ends]))
-    return np.asarray(overlapping * np.exp(share))
+    found = np.array([body.press(float(depth[i]), float(overlapping[i])).contact_radius for i in ends])
+    shares = np.where(found > flat, (found - flat) / beyond[ends], LEAST_SHARE)
+    share = np.interp(np.log(depth), np.log(depth[ends]), np.log(shares))
+    return np.asarray(flat + beyond * np.exp(share))
 
 
 def _overlapping(indenter: Indenter, depth: Array) -> Array:

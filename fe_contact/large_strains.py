@@ -23,6 +23,7 @@ from fe_contact.progress import Progress, silent
 from fe_contact.settings import Given, check_kind, tolerance_of
 from fe_contact.solids.newton import material_of
 from fe_contact.solids.pressing import CORRECTED, Solid, check_large
+from fe_contact.solids.sharp_rim import rounded
 from fe_contact.threads import one_thread
 from lumped.errors import NotReached
 from lumped.indentation import Indentation
@@ -101,7 +102,11 @@ def depth_reached(scene: Scene) -> float:
     indenter, small = indenter_of(scene), statics.scales(scene, statics.plan(scene, {}).numerics)
     if isinstance(indenter.shape, Block) and indenter.shape.uniform:
         return small.peak_depth
-    numerics, radius = settings({"elements_per_contact": COARSEST}, indenter.shape, large=True), small.contact_radius
+    radius = small.contact_radius
+    if scene.geometry.sharp_rim:
+        indenter = rounded(indenter)
+        radius = float(indenter.shape.load_curve.contact_radius(small.peak_depth))
+    numerics = settings({"elements_per_contact": COARSEST}, indenter.shape, large=True)
     solid = Solid.of(indenter.elastic(False), np.array([radius]), numerics)
     joule = scene.contact_modulus.relaxed * indenter.shape.total * solid.unit ** (solid.dimension + 1) / solid.lead
     depth, reached = BEGUN * small.peak_depth, None

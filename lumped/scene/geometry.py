@@ -53,6 +53,11 @@ class Geometry:
         return [part for part, one in self.yielding if one.constant == "bulk" and not one.young.is_elastic]
 
     @property
+    def sharp_rim(self) -> bool:
+        """Whether the striker ends in a rim that cuts into the body."""
+        return self.target.endless and self.target.fixed_radius(self.shape) is not None
+
+    @property
     def surface_remembers(self) -> bool:
         """Whether elastic bodies and E*(t) tell all: of a body with lengths, where nu stays or strain is uniform."""
         uniform = isinstance(self.shape, Block) and self.shape.uniform
@@ -204,6 +209,11 @@ def finite_faults(source: str, model: Model, geometry: Geometry, impacts: int | 
             bool(instead),
             "striker.shape" if target.large_strains else "target.shape",
             f"a {shape.name} on a {target.name} is not built {state}; accepted: {instead}",
+        ),
+        (
+            relaxing and geometry.sharp_rim,
+            "striker.shape",
+            f"a {shape.name}, whose rim is sharp, on what relaxes is not built {state}; accepted: rounded_punch",
         ),
         (geometry.striker_material is not None, "striker.material", f"the striker is rigid {state}; leave it out"),
         (model.inertia, "model.inertia", f"true: no waves {state}; accepted: false"),

@@ -97,7 +97,7 @@ class Pressed:
         scale = depth / -float(waves[2, :, -1].sum())
         pushed = scale * self._pressure(inner) * area[touched]
         energy = -0.5 * scale * float(pushed @ lift[touched, -1])
-        gap = -scale * float((pushed * self._slope(inner)) @ out[touched, -1]) if self.moving else 0.0
+        gap = scale * self._met(pushed, inner, out[touched, -1], energy) if self.moving else 0.0
         power = float(pushed.sum()) * depth / energy
         volume, growth = np.outer(area, deep).ravel(), self._growth
         return StrainField(nu, scale * gradient[..., :-1].reshape(5, -1), volume, energy, gap, power, growth)
@@ -112,10 +112,25 @@ class Pressed:
 
     def _pressure(self, r: Array) -> Array:
         """At places, but for a factor; under a flat end it grows to the rim."""
-        edge = float(self.fall(np.array(self.radius)))
-        if edge == 0.0:
+        if self._rim:
             return np.asarray((1.0 - r**2) ** (0.5 * self._thin - 0.5))
+        edge = float(self.fall(np.array(self.radius)))
         return np.asarray(np.maximum(1.0 - self.fall(self.radius * r) / edge, 0.0) ** (0.5 + 0.5 * self._thin))
+
+    def _met(self, pushed: Array, r: Array, sideways: Array, energy: float) -> float:
+        """Work against the profile at places, where the surface moves `sideways` by so much at a scale of one.
+
+        A rim that the surface moves in under presses a wider part of it: of `energy`, which is as the radius where the
+        body is thick, as the area where each column is pressed by itself.
+        """
+        if self._rim:
+            return -(1.0 + self._thin) * energy * float(sideways[-1])
+        return -float((pushed * self._slope(r)) @ sideways)
+
+    @property
+    def _rim(self) -> bool:
+        """Whether the profile is flat up to where the contact ends."""
+        return float(self.fall(np.array(self.radius))) == 0.0
 
     def _slope(self, r: Array) -> Array:
         """Of the profile at places."""

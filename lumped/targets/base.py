@@ -160,10 +160,9 @@ class Target(Record, ABC):
 
     def strained_instead(self, shape: Shape) -> str:
         """What can have large strains in place of this body under a striker of this shape; empty where it can."""
-        if not self.large_strains:
-            flat = '"layer"' if shape.plane else '"half_space" or "layer"'
-            return f"a rigid striker, not flat, on target.shape = {flat}"
-        return 'striker.shape = "rounded_punch"' if self.fixed_radius(shape) is not None else ""
+        if self.large_strains:
+            return ""
+        return "a rigid striker on target.shape = " + ('"layer"' if shape.plane else '"half_space" or "layer"')
 
     def yielding_faults(self, source: str, shape: Shape, inertia: bool) -> list[Fault]:
         """What is wrong with a striker of this shape that has a material as the target has, with inertia or without."""

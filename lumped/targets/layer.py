@@ -26,6 +26,7 @@ from lumped.targets.base import MOVES, FreeEnd, Target
 # m_a/(density area thickness) of a thick layer: what nu = 0 has, and what a bonded and a sliding base add times s^2;
 # static fields by finite elements, within a tenth down to contacts a tenth as wide as the layer is thick.
 THICK, BONDED, SLIDING = 0.43, 0.2, 0.9
+WIDE = f"{REACH:g} thicknesses of the layer"
 TORSION = 0.63  # physics: by how much of its width a narrow rectangle's torsional stiffness counts as shorter
 BASE = Key(Choice(BASES), "what holds it on its foundation")
 FAR = 300.0  # beyond it nothing of 1/cosh is left
@@ -80,13 +81,21 @@ class Layer(Target):
         film = self.thickness * math.sqrt((1.0 - nu) / (1.5 * (1.0 - 2.0 * nu))) if nu < 0.5 else math.inf
         return FreeEnd(narrow + (wide - narrow) * a / (a + half), min(film, min(0.5 * film, 2.0 * half) + TORSION * a))
 
+    @property
+    def widest(self) -> float:
+        """Radius, m, below which a flat end has to be for a curve of contacts that end beyond it."""
+        return REACH * self.thickness
+
+    def strained_instead(self, shape: Shape) -> str:
+        """A punch that is not too wide to be followed with an edge."""
+        return "" if shape.flat_radius < self.widest else f"a radius below {self.widest:g} m, {WIDE}"
+
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput also for a face whose flat part alone is wider than the layer's curve reaches."""
         super().check_striker(source, shape)
-        reach = REACH * self.thickness
-        if shape.fixed_radius is None and shape.flat_radius >= reach:
-            reason = f"{shape.name}: its flat end is {shape.flat_radius:g} m wide; accepted below {reach:g} m"
-            raise BadInput(Fault(source, "striker.shape", f"{reason}, {REACH:g} thicknesses of the layer"))
+        if shape.fixed_radius is None and shape.flat_radius >= self.widest:
+            reason = f"{shape.name}: its flat end is {shape.flat_radius:g} m wide; accepted below {self.widest:g} m"
+            raise BadInput(Fault(source, "striker.shape", f"{reason}, {WIDE}"))
 
     def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
         """What of the layer moves with the striker adds m_a to its mass m: the peak force falls by m_a/m.
