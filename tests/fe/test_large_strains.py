@@ -1077,7 +1077,7 @@ def press_once(scene: Scene, depth: float) -> float:
 
 
 REFUSED = {
-    "striker.shape": ("polymer-punch", {}),
+    "striker.shape": ("polymer-punch", {"target.shape": "layer", "target.thickness": 1e-4, "target.base": "bonded"}),
     "target.shape": ("two-spheres", {}),
     "numerics.enforcement": ("polymer-sphere", {}),
 }

@@ -287,19 +287,25 @@ def test_elastic_laws_are_judged_by_what_they_leave_out(impact: Result) -> None:
 
 @pytest.mark.tenth
 def test_restitution_falls_among_the_published_ones(impact: Result, campaign_size: Callable[..., int]) -> None:
-    """Over V*: Thornton's cut-off pressure is too soft, Johnson's of full plasticity too firm until V* = 100; beyond,
-    all fall as V*^(-1/4) (Wu, Li and Thornton 2003, before large strains).
+    """Over V*: Thornton's cut-off pressure is too soft, Johnson's of full plasticity too firm until V* = 100.
+
+    Two fits to others' finite elements, of restitution itself and of what flattens and springs back, part as V* grows:
+    by 0.06 at 20, by 0.11 at 60, where the first one's range ends. Beyond, the second falls as V*^(-0.17), for the mean
+    pressure still grows; the asymptote of a constant one, V*^(-1/4), comes later.
     """
     speeds = [6.0, 3.0, 20.0, 60.0, 240.0][: campaign_size(5)]
     found = {speed: impact if speed == 6.0 else struck(speed, {"tolerance": 0.01}) for speed in speeds}
     restitution = {speed: result.quantities["restitution"].value or 0.0 for speed, result in found.items()}
     for speed, value in restitution.items():
         assert published.thornton(speed) < value < published.johnson(speed) * (1.0 + SCATTER)
-        if speed <= 60.0:
+        if speed <= 20.0:
             assert value == pytest.approx(published.jackson_green_marghitu(speed), abs=0.03)
+        if speed <= 60.0:
+            assert published.jackson_green_marghitu(speed) - 0.01 < value < published.sprung_back(speed)
     if 240.0 in restitution:
         slope = math.log(restitution[240.0] / restitution[60.0]) / math.log(4.0)
-        assert slope == pytest.approx(-0.25, abs=0.06)
+        fit = math.log(published.sprung_back(240.0) / published.sprung_back(60.0)) / math.log(4.0)
+        assert -0.25 < slope == pytest.approx(fit, abs=0.02)
 
 
 @pytest.mark.tenth

@@ -6,9 +6,12 @@ from __future__ import annotations
 
 import math
 
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
 
 def jackson_green_marghitu(speed: float) -> float:
-    """Restitution for 1 < V* < 60, within 0.03: Jackson, Green and Marghitu 2010, doi 10.1007/s11071-009-9591-z."""
+    """Restitution for 1 < V* < 60: Jackson, Green and Marghitu 2010, doi 10.1007/s11071-009-9591-z."""
     return 1.0 - 0.1 * math.log(speed) * ((speed - 1.0) / 59.0) ** 0.156
 
 
@@ -31,6 +34,20 @@ def jackson_green(depth: float) -> float:
     elastic = math.exp(-0.25 * depth ** (5.0 / 12.0))
     flowed = 4.0 * 2.84 / 1.613 * (1.0 - math.exp(-(depth ** (5.0 / 9.0)) / 25.0))
     return elastic + flowed / math.sqrt(depth)
+
+
+def sprung_back(speed: float) -> float:
+    """Restitution of what is flattened so and springs back as Hertz has it, from a contact as wide as theirs.
+
+    a^2 = R d (w/1.9)^0.14; the work of a release from F is 3 F^2/(10 E* a).
+    """
+
+    def force(depth: float) -> float:
+        return float(depth**1.5) * jackson_green(depth)
+
+    deepest = brentq(lambda depth: 2.5 * quad(force, 0.0, depth)[0] - speed**2, 0.5, 1e4)
+    width = math.sqrt(deepest * max(deepest / 1.9, 1.0) ** 0.14)
+    return force(deepest) / (math.sqrt(width) * speed)
 
 
 def kogut_etsion(depth: float) -> float:
