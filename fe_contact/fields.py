@@ -3,7 +3,9 @@
 A viscoelastic body of constant Poisson's ratio has, at every instant, the displacement of the elastic body with
 the same surface displacement, and the stress of the elastic body under the same pressure. So two
 back-substitutions give the whole interior, on a finer mesh than the impact's: a stress is a derivative. With a body
-of constant bulk modulus the interior does not follow from the surface, and nothing is written.
+of constant bulk modulus the interior does not follow from the surface, and nothing is written. With large strains the
+fields are those of the impact's own mesh, where strains may be large, with Cauchy's stress, the pressure on the
+deformed surface, and points where they are at rest: the deformed body is where the displacement takes them.
 
 Cells and points of ``fields.vtu``: every finite element is cut along its own nodes into linear triangles, so
 that the points are the nodes of the element, at (x, y, z) = (r, z, 0) m with the body at z <= 0. Point data:
@@ -38,10 +40,13 @@ from fe_contact.budget.certify import Certified
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.settings import Numerics
+from fe_contact.solids.newton import Equilibrium
+from fe_contact.solids.pressing import Solid, contact_radius
 from fe_contact.steppers.scaled_surface import ScaledSurface
 from fe_contact.steppers.steps import Snapshot
 from fe_contact.targets.base import TARGETS
 from lumped.errors import BadInput, Fault
+from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.targets import HalfSpace
 from lumped.targets.layer import Layer
@@ -132,6 +137,56 @@ def fields_at_peak(scene: Scene, certified: Certified) -> Fields:
     )
 
 
+def strained_at_peak(scene: Scene, result: Result) -> Fields:
+    """The fields of large strains where the force peaks. Raises BadInput, see :func:`check_fields`, and NotReached."""
+    from fe_contact import large_strains, relaxing_impact  # late: fields of small strains need neither
+
+    check_fields(scene)
+    elastic = scene.geometry.material.young.is_elastic
+    solid, found = (large_strains if elastic else relaxing_impact).at_peak(scene, result)
+    time = result.quantities["peak_time"].value or 0.0
+    return _strained(solid, found, scene.contact_modulus.glassy, time)
+
+
+def _strained(solid: Solid, found: Equilibrium, modulus: float, time: float) -> Fields:
+    """Of an equilibrium; stresses in units of a ``modulus``, Pa.
+
+    What a facet bears along the motion over its shadow, r dr of the deformed surface, is the pressure.
+    """
+    displacement, loaded = found.rigid
+    gradient = loaded.bulk.gradient(displacement)
+    values = np.concatenate([cauchy(loaded.answer.stress, gradient), gradient[[0, 4]]])
+    *stresses, along, around = at_nodes(solid.basis, solid.elements, values)
+    nodes = np.unique(solid.basis.element_dofs[:, solid.elements])
+    triangles = subdivided(solid.basis).reshape(solid.basis.nelems, -1, 3)[solid.elements].reshape(-1, 3)
+    touch, place, moved = found.balance.touch, solid.basis.doflocs[:, nodes].T, displacement.reshape(-1, 2)[nodes]
+    radius = contact_radius(found.balance)
+    touching = (place[:, 1] == 0.0) & (place[:, 0] + moved[:, 0] <= radius)
+    borne = np.interp(place[:, 0], touch.skin.place[0].ravel(), touch.pressure.ravel())
+    shadow = ((1.0 + along) * (1.0 + around))[nodes]
+    return Fields(
+        time=time,
+        depth=solid.unit * found.balance.depth / solid.lead,
+        contact_radius=solid.unit * radius,
+        points=solid.unit * place,
+        triangles=np.searchsorted(nodes, triangles),
+        displacement=solid.unit * moved,
+        stress=modulus * np.stack(stresses, axis=1)[nodes],
+        pressure=modulus * np.where(touching, borne / shadow, 0.0),
+        contact=touching.astype(np.int64),
+    )
+
+
+def cauchy(stress: Array, gradient: Array) -> Array:
+    """Cauchy's stress P F^T/J, (4, ...) as ``STRESSES``, of Piola and Kirchhoff's first, (5, ...)."""
+    rr, rz, zr, zz, tt = gradient
+    volume = ((1.0 + rr) * (1.0 + zz) - rz * zr) * (1.0 + tt)
+    radial = stress[0] * (1.0 + rr) + stress[1] * rz
+    axial = stress[2] * zr + stress[3] * (1.0 + zz)
+    sheared = stress[0] * zr + stress[1] * (1.0 + zz)
+    return np.asarray(np.stack([radial, axial, stress[4] * (1.0 + tt), sheared]) / volume)
+
+
 def _indented(
     scene: Scene, surface: ScaledSurface, body: WholeBody, numerics: Numerics, depth: float, length: float
 ) -> Array:
@@ -173,6 +228,21 @@ def nodal_stress(basis: Basis, displacement: Array, law: Array) -> Array:
     shared = np.bincount(dofs, minlength=basis.N)
     sums = [np.bincount(dofs, component.ravel(), basis.N) for component in strain]
     return np.asarray((law @ (np.stack(sums) / shared)).T)
+
+
+def at_nodes(basis: Basis, elements: Indices, values: Array) -> Array:
+    """Values (k, e, points) of some elements at all nodes (k, N); zero where there is none."""
+    degree = max(basis.elem.maxdeg - 1, 1)  # that of strains
+    local = values @ (_monomials(basis.elem.doflocs, degree) @ np.linalg.pinv(_monomials(basis.X.T, degree))).T
+    dofs = basis.element_dofs[:, elements].T.ravel()
+    shared = np.maximum(np.bincount(dofs, minlength=basis.N), 1)
+    return np.stack([np.bincount(dofs, part.ravel(), basis.N) for part in local]) / shared
+
+
+def _monomials(places: Array, degree: int) -> Array:
+    """Of coordinates (n, 2), up to a degree, (n, m)."""
+    x, y = places.T
+    return np.stack([x**i * y**j for i in range(degree + 1) for j in range(degree + 1 - i)], axis=1)
 
 
 def subdivided(basis: Basis) -> Indices:

@@ -34,6 +34,7 @@ from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.shapes import Shape
 
+KEPT = ("tolerance", "elements_per_contact", "order", "penalty", "enforcement", "far_radius")  # settings, of all
 CAUSES = ("mesh", "penalty", "far_field")  # that a setting lessens
 LAST_NU = 0.5 - 1e-9  # solves lose their digits as 1/(1 - 2 nu): no answer from 1e-12 on, right ones still at 1e-10
 ROUNDING = 1e-9  # relative, of a solve of nearly incompressible bodies: where nothing else errs
@@ -90,7 +91,6 @@ def indent(
         indenter.check_contacts(depth[:asked], base.contact_radius[:asked])
     error = ROUNDING + np.sum(list(budget.values()), axis=0)[:asked]
     force = (modulus * indenter.shape.total * base.force)[:asked]
-    kept = ("tolerance", "elements_per_contact", "order", "penalty", "enforcement", "far_radius")
     return Indentation(
         indenter=indenter,
         method="fe",
@@ -101,7 +101,7 @@ def indent(
         contact_radius=base.contact_radius[:asked],
         force_error=error * force,
         budget={cause: error[:asked] for cause, error in budget.items()},
-        numerics={key: value for key, value in numerics.as_dict().items() if key in kept},
+        numerics={key: value for key, value in numerics.as_dict().items() if key in KEPT},
         timing=clock.read(),
         work=base.work,
     )

@@ -18,10 +18,10 @@ from fe_contact.budget import plan as statics
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import AIM
 from fe_contact.budget.solved import ImpactModel
-from fe_contact.indentation import COARSEST, indent, indenter_of, settings
+from fe_contact.indentation import COARSEST, KEPT, indent, indenter_of, settings
 from fe_contact.progress import Progress, silent
 from fe_contact.settings import Given, check_kind, tolerance_of
-from fe_contact.solids.newton import material_of
+from fe_contact.solids.newton import Equilibrium, material_of
 from fe_contact.solids.pressing import CORRECTED, Solid, check_large
 from fe_contact.solids.sharp_rim import rounded
 from fe_contact.threads import one_thread
@@ -121,6 +121,16 @@ def depth_reached(scene: Scene) -> float:
             break
         depth *= more ** (balance.energy / (balance.force * balance.depth))
     return depth
+
+
+def at_peak(scene: Scene, result: Result) -> tuple[Solid, Equilibrium]:
+    """The body of a result with its settings, at the peak depth. Raises NotReached."""
+    indenter, depth = indenter_of(scene).elastic(False), result.quantities["peak_depth"].value or 0.0
+    radius, given = float(result.history.contact_radius.max()), {key: result.numerics[key] for key in KEPT}
+    numerics = settings(given, indenter.shape, large=True)
+    solid = Solid.of(indenter, np.array([radius]), numerics)
+    with material_of(scene.target.owner):
+        return solid, solid.advanced(None, depth, numerics.penalty * solid.unit / radius)
 
 
 def check_range(scene: Scene) -> None:

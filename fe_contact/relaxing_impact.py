@@ -113,6 +113,16 @@ class Marcher:
 
         Raises NotReached.
         """
+        return self._record(*self._instants(counted))
+
+    def at_peak(self) -> Equilibrium:
+        """In the step in which the force peaks. Raises NotReached."""
+        found = max(self._instants(uncounted)[0], key=lambda one: one.force).found
+        assert found is not None  # the touch bears no force
+        return found
+
+    def _instants(self, counted: Counted) -> tuple[list[Instant], bool]:
+        """The ends of all steps, and whether the contact ended."""
         instants, separated = [self._touch()], False
         while instants[-1].time < self.strike.end_time * (1.0 - 1e-12):
             here = instants[-1]
@@ -130,7 +140,7 @@ class Marcher:
                 break
             instants.append(there)
             counted(1.0)
-        return self._record(instants, separated)
+        return instants, separated
 
     def _touch(self) -> Instant:
         core, none = self.body.body.core, Fading.over(self.law.network, 1.0)
@@ -260,6 +270,13 @@ class Marcher:
             points = float(np.vdot(body.core.weight, square)) / (4.0 * law.sudden.shear)
             found += float(points + 0.5 * moved @ body.rest @ moved) / share
         return found
+
+
+def at_peak(scene: Scene, result: Result) -> tuple[Solid, Equilibrium]:
+    """The body of a result with its settings, in the step in which the force peaks. Raises NotReached."""
+    with material_of(scene.target.owner):
+        marcher = Marcher.of(scene, Numerics(**result.numerics))
+        return marcher.solid, marcher.at_peak()
 
 
 def _throughout(change: Variation) -> Variation:

@@ -104,10 +104,6 @@ def _check(args: argparse.Namespace, scene: Scene) -> None:
     from fe_contact.fields import check_fields
     from fe_contact.reference import with_waves
 
-    if scene.model.finite:
-        reason = "finite: no fields of large strains in this version; accepted with --fields: small"
-        raise BadInput(Fault(scene.source, "model.kinematics", reason))
-
     if scene.model.inertia and (with_waves(scene).write_fields is None or scene.striker_material is not None):
         reason = f"{scene.target.name}: accepted with --fields and model.inertia: half_space, its striker rigid"
         raise BadInput(Fault(scene.source, "target.shape", reason))
@@ -116,15 +112,17 @@ def _check(args: argparse.Namespace, scene: Scene) -> None:
 
 
 def _write_fields(result: Result, solved: Solved | None, again: PressedAgain | None, where: Path) -> None:
-    from fe_contact.fields import write_fields
+    from fe_contact.fields import strained_at_peak, write_fields, written
     from fe_contact.reference import with_waves
 
     if again is not None:
         again.write_fields(result.quantities["peak_time"].value or 0.0, where)
+    elif result.model.finite:
+        written(strained_at_peak(result.scene, result), where)
     elif solved is None:
-        written = with_waves(result.scene).write_fields
-        assert written is not None  # see _check
-        written(result.scene, result, where)
+        write = with_waves(result.scene).write_fields
+        assert write is not None  # see _check
+        write(result.scene, result, where)
     else:
         write_fields(result.scene, solved.certified, where)
 

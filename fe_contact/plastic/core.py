@@ -11,7 +11,7 @@ import scipy.sparse as sparse
 
 from fe_contact.assembly.forms import Array, Basis, Indices, Matrix
 from fe_contact.dynamics.flow import Flowed
-from fe_contact.plastic.fields import at_nodes
+from fe_contact.fields import at_nodes
 from fe_contact.plastic.ground import GUARD, WIDEST, at_rest, yielding_basis
 from fe_contact.plastic.path import PlasticZoneWide
 from fe_contact.solids.base import PointAnswer

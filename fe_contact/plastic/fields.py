@@ -13,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_contact.assembly.forms import Array, Basis, Indices
-from fe_contact.fields import Fields, subdivided, written
+from fe_contact.assembly.forms import Array, Indices
+from fe_contact.fields import Fields, at_nodes, subdivided, written
 from fe_contact.plastic.course import Course, within_core
 from fe_contact.plastic.ground import Ground
 from fe_contact.plastic.impact import Runner, pilot, released_power
@@ -103,18 +103,3 @@ class PressedAgain:
         """Write ``fields.vtu``, see :mod:`fe_contact.fields`; its path."""
         fields, amount = self.fields(time)
         return written(fields, where, {"plastic_strain": amount})
-
-
-def at_nodes(basis: Basis, elements: Indices, values: Array) -> Array:
-    """Values (k, e, points) of some elements at all nodes (k, N); zero where there is none."""
-    degree = max(basis.elem.maxdeg - 1, 1)  # that of strains
-    local = values @ (_monomials(basis.elem.doflocs, degree) @ np.linalg.pinv(_monomials(basis.X.T, degree))).T
-    dofs = basis.element_dofs[:, elements].T.ravel()
-    shared = np.maximum(np.bincount(dofs, minlength=basis.N), 1)
-    return np.stack([np.bincount(dofs, part.ravel(), basis.N) for part in local]) / shared
-
-
-def _monomials(places: Array, degree: int) -> Array:
-    """Of coordinates (n, 2), up to a degree, (n, m)."""
-    x, y = places.T
-    return np.stack([x**i * y**j for i in range(degree + 1) for j in range(degree + 1 - i)], axis=1)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fe_contact.assembly.forms import Array, Indices
+from fe_contact.assembly.forms import Array, Basis, Indices
 from fe_contact.assembly.operators import ElasticBody, SolidMesh, moduli
 from fe_contact.bodies.pressing import PressedDepths, half_width
 from fe_contact.errors import ContactTooWide
@@ -62,11 +62,14 @@ NEAREST = 0.02  # apart in ln depth, a way is not made in halves any more
 class Solid:
     """A body on its mesh, in units of ``unit``, m, and E*; forces in unit to the power ``dimension``.
 
-    ``ends``: whether the mesh is all of it; ``lead`` share of a depth by which the striker comes in here; ``sharp``:
-    whether it has corners where stresses are infinite.
+    ``basis`` of the mesh, of which some ``elements`` may be strained much; ``ends``: whether the mesh is all of it;
+    ``lead`` share of a depth by which the striker comes in here; ``sharp``: whether it has corners where stresses are
+    infinite.
     """
 
     encounter: Encounter
+    basis: Basis
+    elements: Indices
     unit: float
     dimension: int
     unknowns: int
@@ -99,7 +102,8 @@ class Solid:
         striker, placed = _touched(mesh, profile, rolled)
         skin = Skin.of(body.surface, numerics.order, core.size, placed)
         encounter = replace(Encounter.of(whole, skin, striker), covered=mesh.covered)
-        return cls(encounter, unit, body.surface.dimension - 1, core.size, mesh.ends, mesh.lead, mesh.sharp)
+        dimension = body.surface.dimension - 1
+        return cls(encounter, body.basis, elements, unit, dimension, core.size, mesh.ends, mesh.lead, mesh.sharp)
 
     def advanced(
         self,
