@@ -137,22 +137,13 @@ def fields_at_peak(scene: Scene, certified: Certified) -> Fields:
     )
 
 
-def strained_at_peak(scene: Scene, result: Result) -> Fields:
-    """The fields of large strains where the force peaks. Raises BadInput, see :func:`check_fields`, and NotReached."""
-    from fe_contact import large_strains, relaxing_impact  # late: fields of small strains need neither
-
-    check_fields(scene)
-    elastic = scene.geometry.material.young.is_elastic
-    solid, found = (large_strains if elastic else relaxing_impact).at_peak(scene, result)
-    time = result.quantities["peak_time"].value or 0.0
-    return _strained(solid, found, scene.contact_modulus.glassy, time)
-
-
-def _strained(solid: Solid, found: Equilibrium, modulus: float, time: float) -> Fields:
-    """Of an equilibrium; stresses in units of a ``modulus``, Pa.
+def strained_fields(result: Result, solid: Solid, found: Equilibrium) -> Fields:
+    """Of large strains, from the equilibrium where the force peaks. Raises BadInput, see :func:`check_fields`.
 
     What a facet bears along the motion over its shadow, r dr of the deformed surface, is the pressure.
     """
+    check_fields(result.scene)
+    modulus = result.scene.contact_modulus.glassy
     displacement, loaded = found.rigid
     gradient = loaded.bulk.gradient(displacement)
     values = np.concatenate([cauchy(loaded.answer.stress, gradient), gradient[[0, 4]]])
@@ -165,7 +156,7 @@ def _strained(solid: Solid, found: Equilibrium, modulus: float, time: float) -> 
     borne = np.interp(place[:, 0], touch.skin.place[0].ravel(), touch.pressure.ravel())
     shadow = ((1.0 + along) * (1.0 + around))[nodes]
     return Fields(
-        time=time,
+        time=result.quantities["peak_time"].value or 0.0,
         depth=solid.unit * found.balance.depth / solid.lead,
         contact_radius=solid.unit * radius,
         points=solid.unit * place,

@@ -41,6 +41,8 @@ from lumped.shapes._block import Block
 from lumped.targets import HalfSpace
 
 if TYPE_CHECKING:
+    from fe_contact.solids.newton import Equilibrium
+    from fe_contact.solids.pressing import Solid
     from fe_contact.waves.targets.base import WaveTarget
 
 ROUNDS = 4  # refinements before giving up
@@ -102,6 +104,15 @@ def model_of(scene: Scene) -> ImpactModel:
 
         return ELASTIC if scene.geometry.material.young.is_elastic else RELAXING
     return _of_waves(with_waves(scene)) if scene.model.inertia else STATICS
+
+
+def strained_at_peak(result: Result) -> tuple[Solid, Equilibrium]:
+    """The body of a result of large strains where the force peaks, with its settings. Raises NotReached."""
+    from fe_contact import large_strains, relaxing_impact  # late: few impacts need them
+
+    if result.scene.geometry.material.young.is_elastic:
+        return large_strains.at_peak(result.scene, result)
+    return relaxing_impact.at_peak(result.scene, result)
 
 
 def with_waves(scene: Scene) -> WaveTarget:

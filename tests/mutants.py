@@ -314,7 +314,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/budget/variation.py", "Variation._about_peak", "1 -> 2"): "a dense place on: 2 % of a median bar",
     ("fe_contact/budget/variation.py", "Variation._duration", "if speed"): "a guard against dividing by zero itself",
     ("fe_contact/steppers/steps.py", "Inertia.moved", "strike.end_time - state.time"): "an end time but for rounding",
-    ("fe_contact/relaxing_impact.py", "Marcher.march", "self.strike.end_time *"): "an end time but for rounding",
+    ("fe_contact/relaxing_impact.py", "Marcher._instants", "self.strike.end_time *"): "an end time but for rounding",
     ("lumped/solvers/mdr/march.py", "Shrinking.__init__", "0.0 -> 0.1"): "a guard against dividing by zero itself",
     ("fe_contact/budget/certify.py", "ROUNDING", ""): "below what any result is asked for",
     ("fe_contact/indentation.py", "ROUNDING", ""): "below what any result is asked for",

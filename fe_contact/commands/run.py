@@ -112,13 +112,13 @@ def _check(args: argparse.Namespace, scene: Scene) -> None:
 
 
 def _write_fields(result: Result, solved: Solved | None, again: PressedAgain | None, where: Path) -> None:
-    from fe_contact.fields import strained_at_peak, write_fields, written
-    from fe_contact.reference import with_waves
+    from fe_contact.fields import strained_fields, write_fields, written
+    from fe_contact.reference import strained_at_peak, with_waves
 
     if again is not None:
         again.write_fields(result.quantities["peak_time"].value or 0.0, where)
     elif result.model.finite:
-        written(strained_at_peak(result.scene, result), where)
+        written(strained_fields(result, *strained_at_peak(result)), where)
     elif solved is None:
         write = with_waves(result.scene).write_fields
         assert write is not None  # see _check

@@ -11,8 +11,8 @@ import pytest
 
 from fe_contact import run
 from fe_contact.cli import main
-from fe_contact.fields import Fields, cauchy, fields_at_peak, strained_at_peak
-from fe_contact.reference import solve
+from fe_contact.fields import Fields, cauchy, fields_at_peak, strained_fields
+from fe_contact.reference import solve, strained_at_peak
 from lumped import Result, Scene
 from lumped.materials import Material, Relaxation
 from lumped.materials.energies.base import energy_of, strained
@@ -32,7 +32,7 @@ def scene(young: Relaxation, velocity: float, target: Target) -> Scene:
 
 def with_fields(one: Scene) -> tuple[Result, Fields]:
     found = run(one, tolerance=1e-2)
-    return found, strained_at_peak(one, found)
+    return found, strained_fields(found, *strained_at_peak(found))
 
 
 @pytest.mark.parametrize(
