@@ -287,6 +287,22 @@ def test_the_command_writes_what_it_prints(tmp_path: Path, capsys: pytest.Captur
     assert {"history.csv", "result.json", "ting-history.csv", "compare.svg", "compare.png"} <= written
 
 
+def test_larger_models_are_measured_beside_the_laws_where_asked(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As `plan` measures them; the record holds them."""
+    chosen = ["polymer-sphere", "--tolerance", "0.03", "--measure"]
+    assert main(["compare", *chosen, "--laws", "hertz", "--out", str(tmp_path)]) == 0
+    told = capsys.readouterr().out
+    assert main(["plan", *chosen, "--json"]) == 0
+    (planned,) = json.loads(capsys.readouterr().out)["measured"]
+    assert "finite strain (model.kinematics=finite): estimate" in told
+    assert "by what was measured, bars added, this model is good to" in told
+    (found,) = json.loads((tmp_path / "compare.json").read_text(encoding="utf-8"))["larger_models"]
+    assert found["effect"] == planned["effect"] == "finite strain"
+    assert found["change"] == pytest.approx(planned["change"], abs=found["error"])
+
+
 def test_every_unknown_law_is_named_with_the_nearest(refused: Callable[..., list[str]]) -> None:
     faults = refused("compare", "polymer-sphere", "--laws", "tong,hertz,corespondence")
     assert [fault.rpartition("did you mean ")[2] for fault in faults] == ["ting?", "correspondence?"]

@@ -110,6 +110,9 @@ KINEMATICS = option(
 )
 
 
+MEASURE = option("--measure", action="store_true", help="run the larger model of each effect above the tolerance")
+
+
 def quick(says: str) -> methodcaller:
     """--quick: what it leaves out."""
     return option("--quick", action="store_true", help=says)

@@ -28,13 +28,18 @@ def execute(args: argparse.Namespace) -> int:
     measured = _measured(args)
     remarks = () if measured is None else check_curve(measured, scene, str(args.measured))
     run = base.StudyRun.of(args, "compare", scene.name)
-    comparison = compared(scene, given, names, measured, run.progress)
+    comparison, lines = compared(scene, given, names, measured, run.progress), list[str]()
+    if args.measure:
+        from fe_contact.studies.larger_models import measure, measured_lines
+
+        comparison = replace(comparison, larger=measure(scene, given, run.progress))
+        lines = measured_lines(comparison.larger or (), comparison.reference.model_ledger)
     content = comparison_content(comparison)
     _, told = base.publish(run.where, partial(write_comparison, comparison), partial(plot_comparison, comparison))
     for remark in remarks:
         base.complain(remark)
     title = f"{scene.name}: against finite elements"
-    return base.report(args, comparison.reference, content, [*content["verdict"], told], title, scene.model)
+    return base.report(args, comparison.reference, content, [*content["verdict"], *lines, told], title, scene.model)
 
 
 def _measured(args: argparse.Namespace) -> Curve | None:
@@ -78,6 +83,7 @@ MEMBER = base.Command(
         *base.SCENE,
         *base.OUTPUT,
         base.option("--laws", metavar="a,b,...", help="lumped laws; default: all that the scene has an answer of"),
+        base.MEASURE,
         base.option("--measured", type=Path, metavar="CURVE.csv", help="measured force: time_s,force_N"),
         base.option("--touch", default="0", metavar="T", help="when the bodies touch in that, s; fit or identify tell"),
     ),

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
 from fe_contact.settings import KEYS, SCALES
 from lumped.errors import FeContactError, NotReached
-from lumped.result.result import LedgerEntry, good_to
+from lumped.result.result import good_to
 from lumped.scene.scene import Scene
 from lumped.schema import Table
 
 if TYPE_CHECKING:  # finite elements are loaded when they are needed
     from fe_contact.budget.plan import Plan
-    from fe_contact.studies.larger_models import MeasuredEffect
     from fe_contact.waves.plan import Cost
 
 
@@ -43,7 +40,6 @@ def execute(args: argparse.Namespace) -> int:
         return base.DONE
     chosen = planned(scene, given, progress, plan)
     takes, refused = _takes(scene, chosen, given)
-    measured = _measured(args, scene, given)
     ledger = [entry.to_json(float(chosen.numerics.tolerance)) for entry in chosen.ledger]
     content = methods | {
         "numerics": chosen.numerics.as_dict(),
@@ -51,9 +47,13 @@ def execute(args: argparse.Namespace) -> int:
         "cost": takes and takes.as_dict(),
         "refused": refused and str(refused),
     }
-    if measured is not None:
+    lines += _lines(chosen, takes)
+    if args.measure:
+        from fe_contact.studies.larger_models import measure, measured_lines
+
+        measured = measure(scene, given, progress)
         content["measured"] = [one.to_json() for one in measured]
-    lines += [*_lines(chosen, takes), *([] if measured is None else _measured_lines(measured, chosen.ledger))]
+        lines += measured_lines(measured, chosen.ledger)
     base.say(args, content, lines, title)
     if refused and not args.json:
         base.complain(str(refused))
@@ -70,25 +70,6 @@ def _lines(chosen: Plan, takes: Cost | None) -> list[str]:
     lines += [] if takes is None else [f"takes {takes}"]
     lines.append("left out, relative to the peak force:")
     return [*lines, *(f"  {entry.line(tolerance)}" for entry in chosen.ledger), good_to(chosen.ledger)]
-
-
-def _measured(args: argparse.Namespace, scene: Scene, given: Table) -> tuple[MeasuredEffect, ...] | None:
-    """Effects above the tolerance by the next larger model, None where nobody asked."""
-    if not args.measure:
-        return None
-    from fe_contact.studies.larger_models import measure
-
-    return measure(scene, given, base.progress_of(args))
-
-
-def _measured_lines(measured: Sequence[MeasuredEffect], ledger: Sequence[LedgerEntry]) -> list[str]:
-    """What was measured, and how good the model is by it; where the scene does not decide, the estimate counts."""
-    if not measured:
-        return ["measured, as a change of the peak force:", "  no effect above the tolerance has a larger model"]
-    most = {one.effect: abs(one.change) + one.error for one in measured if one.change is not None and one.error}
-    known = [replace(one, estimate=most.get(one.effect, one.estimate)) if one.spread is None else one for one in ledger]
-    found = ["measured, as a change of the peak force:", *(f"  {one}" for one in measured)]
-    return [*found, f"by what was measured, bars added, {good_to(known)}"]
 
 
 def _takes(scene: Scene, chosen: Plan, given: Table) -> tuple[Cost | None, FeContactError | None]:
@@ -118,7 +99,7 @@ MEMBER = base.Command(
     (
         *base.SCENE,
         *base.OUTPUT,
-        base.option("--measure", action="store_true", help="run the larger model of each effect above the tolerance"),
+        base.MEASURE,
     ),
     execute,
     example="fe-contact plan polymer-sphere --tolerance 1e-2",

@@ -22,7 +22,7 @@ from fe_contact.studies.finite_length import free_ends
 from lumped.errors import FeContactError
 from lumped.materials.energies.base import DEFAULT
 from lumped.result.model_ledger import FINITE_LENGTH
-from lumped.result.result import NO_KEY, LedgerEntry, Quantity, Result, percent
+from lumped.result.result import NO_KEY, LedgerEntry, Quantity, Result, good_to, percent
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.schema import Table
@@ -109,6 +109,16 @@ def measure(scene: Scene, given: Given, progress: Progress = silent) -> tuple[Me
         *_by_runs(scene, given, above(ledger, tolerance), progress),
         *(_at_rest(scene, one, progress) for one in ended),
     )
+
+
+def measured_lines(measured: Sequence[MeasuredEffect], ledger: Sequence[LedgerEntry]) -> list[str]:
+    """What was measured, and how good the model is by it; where the scene does not decide, the estimate counts."""
+    if not measured:
+        return ["measured, as a change of the peak force:", "  no effect above the tolerance has a larger model"]
+    most = {one.effect: abs(one.change) + one.error for one in measured if one.change is not None and one.error}
+    known = [replace(one, estimate=most.get(one.effect, one.estimate)) if one.spread is None else one for one in ledger]
+    found = ["measured, as a change of the peak force:", *(f"  {one}" for one in measured)]
+    return [*found, f"by what was measured, bars added, {good_to(known)}"]
 
 
 def _by_runs(

@@ -30,6 +30,7 @@ from fe_contact.studies.compare.deviations import (
     radius_error,
 )
 from fe_contact.studies.files import write_study
+from fe_contact.studies.larger_models import MeasuredEffect
 from lumped import simulate
 from lumped.errors import BadInput, FeContactError
 from lumped.laws import get
@@ -98,6 +99,7 @@ class Comparison:
     large strains.
 
     ``nested``: whether the contact goes back through the areas it came through, which Ting's solution supposes.
+    ``larger``: what larger models change, where they were asked.
     """
 
     solved: Solved | None
@@ -108,6 +110,7 @@ class Comparison:
     judgements: tuple[Judgement, ...]
     refused: Mapping[str, str]
     nested: NestedAreas | None
+    larger: tuple[MeasuredEffect, ...] | None = None
 
     def __repr__(self) -> str:
         return "\n  ".join([f"{self.reference.scene.name}: against {self.reference.method}", *verdicts(self)])
@@ -388,4 +391,6 @@ def comparison_content(comparison: Comparison) -> Table:
             "refused": comparison.refused,
         }
     )
+    if comparison.larger is not None:
+        content["larger_models"] = [one.to_json() for one in comparison.larger]
     return content
