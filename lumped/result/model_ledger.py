@@ -81,7 +81,7 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
         inertia(scene, resolved, peak),
         profile(scene.geometry.shape, resolved, peak),
         strained_much(scene, resolved, peak),
-        sideways(scene, peak),
+        *(sideways(scene, peak, part) for part, _ in reversed(scene.geometry.yielding)),
         series(scene, peak),
         striker(scene),
         gravity(scene, resolved, peak, scene.mass),
@@ -293,12 +293,14 @@ def striker(scene: Scene) -> LedgerEntry:
     return LedgerEntry(effect, "rigid", None, "the scene gives the striker no material")
 
 
-def sideways(scene: Scene, peak: Peak) -> LedgerEntry:
-    """By how much the peak force changes, both ways, of a mass that meets a power of the depth; a scene of constant
-    bulk modulus has chosen.
+def sideways(scene: Scene, peak: Peak, part: str) -> LedgerEntry:
+    """By how much the peak force changes, both ways, of a mass that meets a power of the depth, by the material of
+    a ``part``; a scene of constant bulk modulus has chosen.
     """
-    effect, material = "constant nu against constant bulk modulus", scene.geometry.material
-    treated, own = "constant nu", f"{scene.target.owner}.material.constant"
+    effect, material = "constant nu against constant bulk modulus", dict(scene.geometry.yielding)[part]
+    if part != scene.target.owner:
+        effect = f"{effect} of the {part}"
+    treated, own = "constant nu", f"{part}.material.constant"
     if material.constant == "bulk":
         return LedgerEntry(effect, "constant bulk modulus", 0.0, "as the scene says")
     if material.young.is_elastic or math.isinf(material.bulk):
@@ -310,8 +312,10 @@ def sideways(scene: Scene, peak: Peak) -> LedgerEntry:
     if peak.depth == 0.0 or peak.duration == 0.0:
         return LedgerEntry(effect, treated, None, "not known without a contact")
     try:
-        curve = scene.target.load_curve(scene.profile, material.nu)
-        forces = [_struck(one, curve, scene, peak) for one in (_bulk_modulus(scene, peak), material.contact_modulus())]
+        curve = scene.target.load_curve(scene.profile, scene.geometry.material.nu)
+        alike = _own_modulus(scene.geometry)
+        moduli = _bulk_modulus(scene, peak, part), alike
+        forces = [_struck(one, curve, scene, peak, alike.spring) for one in moduli]
     except FeContactError:  # no load curve, or one that ends before this depth
         return LedgerEntry(effect, treated, None, f"no load curve tells it; run both of {own}")
     refused = _no_bulk(scene)
@@ -323,8 +327,9 @@ def sideways(scene: Scene, peak: Peak) -> LedgerEntry:
 def _no_bulk(scene: Scene) -> str:
     """Why finite elements take no bulk modulus that stays while the shear modulus relaxes; empty where they do."""
     geometry, state = scene.geometry, "with a constant bulk modulus in this version"
-    target, shape, constant = geometry.target, geometry.shape, replace(geometry.material, constant="bulk")
+    target, shape = geometry.target, geometry.shape
     if scene.model.finite:
+        constant = replace(geometry.material, constant="bulk")
         refused = finite_faults("", scene.model, replace(geometry, material=constant), scene.motion.impacts)
         return str(refused[0]) if refused else ""
     if scene.model.inertia and target.steady_waves(shape):
@@ -336,10 +341,21 @@ def _no_bulk(scene: Scene) -> str:
     return f"one impact is followed {state}" if scene.motion.impacts > 1 else ""
 
 
-def _bulk_modulus(scene: Scene, peak: Peak) -> Relaxation:
-    """E* of constant bulk modulus; its branches by as much more as a body with lengths confines it at once."""
-    alike, target = scene.geometry.material, scene.target
-    modulus = replace(alike, constant="bulk").contact_modulus()
+def _own_modulus(geometry: Geometry) -> Relaxation:
+    """E* of a body as of a half-space, also where it is a block; that of both where two yield."""
+    return geometry.material.contact_modulus() if geometry.striker_material is None else geometry.contact_modulus
+
+
+def _bulk_modulus(scene: Scene, peak: Peak, part: str) -> Relaxation:
+    """The same where that ``part`` has a constant bulk modulus; its branches by as much more as a body with lengths
+    confines it at once.
+    """
+    geometry, target = scene.geometry, scene.target
+    if part != target.owner:
+        assert geometry.striker_material is not None
+        return _own_modulus(replace(geometry, striker_material=replace(geometry.striker_material, constant="bulk")))
+    alike = geometry.material
+    modulus = _own_modulus(replace(geometry, material=replace(alike, constant="bulk")))
     if not target.has_length:
         return modulus
     nu = replace(alike, constant="bulk").elastic(instant=True).nu
@@ -348,15 +364,15 @@ def _bulk_modulus(scene: Scene, peak: Peak) -> Relaxation:
     return replace(modulus, moduli=tuple(more * one for one in modulus.moduli))
 
 
-def _struck(modulus: Relaxation, curve: LoadCurve, scene: Scene, peak: Peak) -> float:
-    """Largest force of the impact by F = int E*(t-s) d(c y), y = depth^n, over that of the relaxed modulus.
+def _struck(modulus: Relaxation, curve: LoadCurve, scene: Scene, peak: Peak, spring: float) -> float:
+    """Largest force of the impact by F = int E*(t-s) d(c y), y = depth^n, over that by a `spring` alone, Pa.
 
     n and c are the load curve's at the peak; lengths over the elastic depth, which is reached in a time of one.
     """
     force, n = _power(curve, peak.depth)
     work, brought = force * peak.depth / (n + 1.0), 0.5 * scene.reduced_mass * scene.velocity**2
-    unit = peak.depth * (brought / (modulus.relaxed * work)) ** (1.0 / (n + 1.0)) / scene.velocity
-    return _largest_force(modulus.stretched(1.0 / unit).scaled(1.0 / modulus.relaxed), n, peak.duration / unit / ROWS)
+    unit = peak.depth * (brought / (spring * work)) ** (1.0 / (n + 1.0)) / scene.velocity
+    return _largest_force(modulus.stretched(1.0 / unit).scaled(1.0 / spring), n, peak.duration / unit / ROWS)
 
 
 def _largest_force(modulus: Relaxation, n: float, step: float) -> float:
@@ -367,18 +383,18 @@ def _largest_force(modulus: Relaxation, n: float, step: float) -> float:
     slowed, times = 0.25 * (n + 1.0) * step, modulus.times
     kept = [math.exp(-step / tau) for tau in times]
     gains = [e * tau * (1.0 - k) / step for e, tau, k in zip(modulus.moduli, times, kept, strict=True)]
-    added = sum(gains) + modulus.viscosity / step
+    pressed = modulus.relaxed + sum(gains) + modulus.viscosity / step
     depth, speed, load, force, most, branches = 0.0, 1.0, 0.0, 0.0, 0.0, [0.0] * len(kept)
     for _ in range(ROWS):
         branches = [k * one - gain * load for k, one, gain in zip(kept, branches, gains, strict=True)]
         carried, free = sum(branches) - modulus.viscosity / step * load, depth + step * speed
         depth = free
         for _ in range(NEWTON):
-            over = depth - free + 0.5 * step * slowed * (force + (1.0 + added) * depth**n + carried)
-            depth -= over / (1.0 + 0.5 * step * slowed * (1.0 + added) * n * depth ** (n - 1.0))
+            over = depth - free + 0.5 * step * slowed * (force + pressed * depth**n + carried)
+            depth -= over / (1.0 + 0.5 * step * slowed * pressed * n * depth ** (n - 1.0))
         load, before = depth**n, force
         branches = [one + gain * load for one, gain in zip(branches, gains, strict=True)]
-        force = (1.0 + added) * load + carried
+        force = pressed * load + carried
         speed, most = speed - slowed * (before + force), max(most, force)
         if speed < 0.0:
             break

@@ -22,6 +22,7 @@ from lumped.shapes.cone import Cone
 from lumped.shapes.plate import Plate
 from lumped.targets.layer import Layer
 from lumped.targets.plane import Plane
+from lumped.targets.sphere import SphereTarget
 
 
 def entry(scene: Scene, effect: str, tolerance: float = 1e-4) -> LedgerEntry:
@@ -265,6 +266,26 @@ def test_constant_bulk_modulus_is_charged_as_the_hereditary_law_has_it(damped: b
             (told,) = [e for e in own.model_ledger if e.effect == "constant nu against constant bulk modulus"]
             peaks = [found.quantities["peak_force"].value or math.nan for found in (own, larger)]
             assert told.estimate == pytest.approx(abs(peaks[1] / peaks[0] - 1.0), rel=0.5, abs=1e-3)
+
+
+RELAXES = Material(Relaxation(1e6, (2e6,), (2e-3,)), 0.2)
+FLOWS = Material(Relaxation(0.0, (3e6,), (5e-3,)), 0.3)
+STIFF = Material(Relaxation(1e9, (2e9,), (1e-3,)), 0.1)
+
+
+@pytest.mark.parametrize("struck", [RELAXES, FLOWS, STIFF], ids=["alike", "fluid", "stiff"])
+def test_of_two_bodies_each_is_charged_with_what_its_own_bulk_modulus_changes(struck: Material) -> None:
+    """The modulus is that of both; of a stiff one nearly nothing is asked, whatever it would do under a rigid ball."""
+    scene = Scene(Sphere(0.01), 0.01, 0.1, struck, SphereTarget(0.02), striker_material=RELAXES)
+    entries = {one.key: one for one in simulate(laws.ting.of(scene), scene, 1e-5).model_ledger if "bulk" in one.effect}
+    assert entries.keys() == {"striker.material.constant", "" if struck is FLOWS else "target.material.constant"}
+    for key, found in entries.items():
+        if not key:
+            assert found.estimate is None
+            continue
+        larger = scene.changed({key: found.value})
+        own, changed = (simulate(laws.ting.of(one), one, 1e-5).quantities["peak_force"] for one in (scene, larger))
+        assert found.estimate == pytest.approx(abs((changed.value or 0.0) / (own.value or 1.0) - 1.0), rel=0.1)
 
 
 @pytest.mark.parametrize("struck", [False, True])
