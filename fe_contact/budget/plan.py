@@ -93,7 +93,8 @@ def plan(scene: Scene, given: Given) -> Plan:
         contact_time=contact_time,
         peak_share=peak_share,
     )
-    peak = Peak(size.peak_force, size.peak_depth, size.contact_radius, 2 * size.peak_time)
+    lasts = size.duration or 2.0 * max(size.peak_time, 0.0)  # a peak at the touch may lie a rounding before it
+    peak = Peak(size.peak_force, size.peak_depth, size.contact_radius, lasts)
     return Plan(placed.varied(**given), frozenset(given) - {"tolerance"}, Ledger(scene, peak, scene.model))
 
 

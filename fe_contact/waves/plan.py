@@ -128,7 +128,7 @@ def placed(
         "echoes": echoes.number,
         "swing": 0.0 if shown and given.get("steps", steps) >= fewest else echoes.swing,
     }
-    peak = Peak(scales.peak_force, scales.peak_depth, scales.contact_radius, 2 * scales.peak_time)
+    peak = Peak(scales.peak_force, scales.peak_depth, scales.contact_radius, scales.duration or 2.0 * scales.peak_time)
     return Plan(WaveNumerics(**{**chosen, **given}), frozenset(given) - {"tolerance"}, model_ledger(scene, peak))
 
 

@@ -16,7 +16,7 @@ from lumped.materials.friction import mismatch, slipping, stuck
 from lumped.materials.radiation import Pulse
 from lumped.result.history import History
 from lumped.result.result import LedgerEntry, Quantity, percent
-from lumped.scene.geometry import Geometry, changing_faults, finite_faults, plasticity_faults, whole_mass_faults
+from lumped.scene.geometry import Geometry, changing_faults, finite_faults, flying_faults, plasticity_faults
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
@@ -144,14 +144,16 @@ def inertia(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
     mass, geometry = scene.reduced_mass, scene.geometry
     pulse = Pulse(peak.force, peak.duration, mass, 0.5 * mass * scene.velocity**2, peak.contact_radius)
     estimate, note = scene.target.inertia_left_out(geometry.shape, geometry.material, pulse)
-    faults = changing_faults("", geometry) + whole_mass_faults("", geometry, scene.mass, scene.target_mass)
+    faults = changing_faults("", geometry)
+    if scene.target.waves_under(geometry.shape):
+        faults += flying_faults("", geometry, scene.mass, scene.target_mass)
     refused = [str(fault) for fault in faults]
     if isinstance(geometry.shape, Block) and geometry.material.young.viscosity > 0.0:
         refused.append("a dashpot in parallel has no wave speed")
     if scene.motion.impacts > 1 and scene.target.rings_on(geometry.shape):
         refused.append("what rings on between contacts is followed in one impact")
     built = scene.target.waves_under(geometry.shape) and not (model.finite or refused)
-    said = "; ".join([note, *refused])
+    said = note if note == scene.target.needs_density else "; ".join([note, *refused])
     return LedgerEntry(effect, "neglected", estimate, said, "model.inertia" if built else "", value=built or None)
 
 
