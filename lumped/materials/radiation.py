@@ -81,6 +81,19 @@ def radiated_share(material: Material, pulse: Pulse, length: float | None = None
     return work / pulse.energy
 
 
+def met_at_once(material: Material, pulse: Pulse, area: float) -> float | None:
+    """Over the peak force what a flat end of this ``area``, m2, meets at the touch: density c v, c held sideways.
+
+    The modulus is what is left of it after half the pulse; None where no wave speed is finite.
+    """
+    density, speed = material.density, math.sqrt(2.0 * pulse.energy / pulse.mass)
+    if density is None or not material.young.spring or math.isinf(material.bulk) or pulse.force == 0.0:
+        return None
+    confined = material.confined_modulus()
+    modulus = float(confined(0.5 * pulse.duration)) if confined.relaxed else confined.glassy
+    return math.sqrt(modulus * density) * speed * area / pulse.force
+
+
 def _both_waves(g: float, power: int = 0) -> float:
     """The part x < g, with x = g sin; times x to this power."""
     angle, weight = (0.5 * math.pi * part for part in gauss(GAUSS_POINTS))

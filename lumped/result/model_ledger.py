@@ -13,7 +13,7 @@ from lumped.load_curves.base import LoadCurve
 from lumped.materials import Relaxation
 from lumped.materials.energies.base import DEFAULT, energy_of
 from lumped.materials.friction import mismatch, slipping, stuck
-from lumped.materials.radiation import Pulse
+from lumped.materials.radiation import Pulse, met_at_once
 from lumped.result.history import History
 from lumped.result.result import LedgerEntry, Quantity, percent
 from lumped.scene.geometry import Geometry, changing_faults, finite_faults, flying_faults, plasticity_faults
@@ -143,7 +143,7 @@ def inertia(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
         return LedgerEntry(effect, "included", 0.0)
     mass, geometry = scene.reduced_mass, scene.geometry
     pulse = Pulse(peak.force, peak.duration, mass, 0.5 * mass * scene.velocity**2, peak.contact_radius)
-    estimate, note = scene.target.inertia_left_out(geometry.shape, geometry.material, pulse)
+    estimate, note = _left_out_or_met(geometry, pulse)
     faults = changing_faults("", geometry)
     if scene.target.waves_under(geometry.shape):
         faults += flying_faults("", geometry, scene.mass, scene.target_mass)
@@ -155,6 +155,23 @@ def inertia(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
     built = scene.target.waves_under(geometry.shape) and not (model.finite or refused)
     said = note if note == scene.target.needs_density else "; ".join([note, *refused])
     return LedgerEntry(effect, "neglected", estimate, said, "model.inertia" if built else "", value=built or None)
+
+
+def _left_out_or_met(geometry: Geometry, pulse: Pulse) -> tuple[float | None, str]:
+    """As the target knows it; more where a flat end meets density c v of it at once, which is there before anything is
+    pressed.
+
+    Beside a half-space, into which that spreads, it stands alone; in a column, from whose base it comes back, it adds
+    to what presses: by sqrt(M/m) of a mass M under a striker m (Saint-Venant; Timoshenko and Goodier, ISBN
+    978-0-07-085805-3, art. 169).
+    """
+    estimate, note = geometry.target.inertia_left_out(geometry.shape, geometry.material, pulse)
+    area, comes_back = geometry.target.met_flat(geometry.shape)
+    met = met_at_once(geometry.material, pulse, area) if area else None
+    if estimate is None or met is None:
+        return estimate, note
+    more = met if comes_back else met - 1.0
+    return (more, f"a flat end meets {percent(met)} of it at the touch") if more > estimate else (estimate, note)
 
 
 def gravity(scene: Scene, model: Model, peak: Peak, mass: float) -> LedgerEntry:

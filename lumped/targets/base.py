@@ -139,6 +139,10 @@ class Target(Record, ABC):
             return min(LOST_FORCE * share, 1.0), f"radiates {min(share, 1.0):.2g} of the kinetic energy"
         return None, self.needs_density if material.density is None else NO_SPEED
 
+    def met_flat(self, shape: Shape) -> tuple[float, bool]:
+        """Area, m2, that is met at once, and whether its echoes come back before they have spread. A half-space's."""
+        return math.pi * shape.flat_radius**2, False
+
     def ends(self, shape: Shape, nu: float, contact_radius: float) -> FreeEnd | None:
         """What an end of a body as long as a shape in plane strain gives way, under a contact this wide, m.
 

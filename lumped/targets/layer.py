@@ -59,6 +59,10 @@ class Layer(Target):
             return LayerPunch(shape.fixed_radius, elastic)
         return LayerCurve(shape.load_curve, elastic)
 
+    def met_flat(self, shape: Shape) -> tuple[float, bool]:
+        """A column's where it is wider than deep."""
+        return math.pi * shape.flat_radius**2, shape.flat_radius > self.thickness
+
     def pressed(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> Pressed:
         """On its own base."""
         return replace(super().pressed(shape, nu, depth, contact_radius), base=self.base)

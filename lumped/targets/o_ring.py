@@ -67,6 +67,10 @@ class ORing(Target):
         added = 0.25 * (1.0 + (material.nu / (1.0 - material.nu)) ** 2) * mass / pulse.mass
         return min(added, 1.0), MOVES.format(added)
 
+    def met_flat(self, shape: Shape) -> tuple[float, bool]:
+        """Nothing: the section is round."""
+        return 0.0, False
+
     def round_radius(self, shape: Shape) -> float:
         """That of the section."""
         return self.section_radius

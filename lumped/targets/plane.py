@@ -52,6 +52,10 @@ class Plane(Target):
         own = shape.own_mass(material.density) / pulse.mass
         return min(math.sqrt(own), 1.0), f"waves of a block that has {own:.2g} of the striker's mass"
 
+    def met_flat(self, shape: Shape) -> tuple[float, bool]:
+        """Nothing more: a block tells its own."""
+        return 0.0, False
+
     def waves_under(self, shape: Shape) -> bool:
         """A block's too that is strained alike everywhere."""
         return not isinstance(shape, Block) or shape.uniform

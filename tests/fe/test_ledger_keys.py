@@ -208,6 +208,39 @@ def test_a_blocks_own_waves_press_as_the_ledger_says(campaign_size: Callable[[in
         assert 0.5 < (peaks[0] / peaks[1] - 1.0) / (entry.estimate or math.inf) < 2.0, keys
 
 
+@pytest.mark.parametrize("target", ["layer", "washer"])
+def test_a_flat_end_meets_a_wide_layer_as_a_block_meets_its_plane(target: str) -> None:
+    """Nothing moves sideways at nu = 0: the same column, whose waves are followed as a block's. Within a factor of 2."""
+    for density in (10.0, 100.0, 1000.0):
+        pressed = {"law": "elastic", "E": 1e6, "nu": 0.0, "density": density}
+        blow = {"mass": 0.1, "velocity": 0.02}
+        size = {"thickness": 2e-3} if target == "layer" else {"height": 2e-3, "inner_radius": 1e-6, "outer_radius": 0.05}
+        struck = {"shape": target, "base": "bonded", "material": pressed, **size}
+        flat = Scene.from_dict({"striker": {"shape": "punch", "radius": 0.05, **blow}, "target": struck})
+        plate = {"shape": "plate", "area": math.pi * 0.05**2, "thickness": 2e-3, "material": pressed, **blow}
+        still = Scene.from_dict({"striker": plate, "target": {"shape": "plane"}})
+        peaks = [run(one, tolerance=1e-2).quantities["peak_force"].value for one in (still, waves_of(still))]
+        (entry,) = [one for one in plan(flat, {}).ledger if one.effect == INERTIA]
+        assert 0.5 < ((peaks[1] or math.nan) / (peaks[0] or math.nan) - 1.0) / (entry.estimate or math.inf) < 2.0
+
+
+def waves_of(scene: Scene) -> Scene:
+    """The same with inertia."""
+    return scene.changed({"model.inertia": True})
+
+
+def test_a_light_punch_meets_more_at_the_touch_than_it_ever_presses() -> None:
+    """On a half-space it presses with v sqrt(2 E* a m) at most, at rest, and with density c v first of all."""
+    radius, mass, velocity, density, nu = 0.01, 1e-4, 0.05, 1200.0, 0.2
+    material = {"law": "elastic", "E": 2e6, "nu": nu, "density": density}
+    striker = {"shape": "punch", "radius": radius, "mass": mass, "velocity": velocity}
+    scene = Scene.from_dict({"striker": striker, "target": {"shape": "half_space", "material": material}})
+    pressed = velocity * math.sqrt(2.0 * 2e6 / (1.0 - nu**2) * radius * mass)
+    speed = math.sqrt(2e6 * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) / density)
+    (entry,) = [one for one in plan(scene, {}).ledger if one.effect == INERTIA]
+    assert entry.estimate == pytest.approx(density * speed * velocity * math.pi * radius**2 / pressed - 1.0, rel=1e-3)
+
+
 def test_what_is_planned_says_what_the_exact_impact_does() -> None:
     """To a twentieth, of what waves and a held bulk modulus take."""
     scene = Scene.load("polymer-sphere")
