@@ -21,6 +21,20 @@ OFTEN = np.array([1.0, 2.0, 1.0, 1.0])
 VOLUME = np.array([1.0, 0.0, 0.0, 1.0, 1.0])  # of a gradient: its trace
 
 
+DEPTHS = np.linspace(0.0, 1.0, 201)  # over the contact radius: Hertz' contacts yield first within, C to 1e-5
+
+
+def first_yield(nu: float) -> float:
+    """C: a Hertz contact first yields, by von Mises, where its peak pressure is C Y; 1.61 at nu = 0.3, 0.67 at -0.8.
+
+    The largest stress on the axis (Johnson, ISBN 978-0-521-34796-9, eq. 3.45) or, for nu below -0.3, at the edge of the
+    contact, where (1 - 2 nu)/3 of the pressure pulls outwards and pushes around.
+    """
+    angle = np.arctan2(1.0, DEPTHS)
+    along, across = -1.0 / (1.0 + DEPTHS**2), 0.5 / (1.0 + DEPTHS**2) - (1.0 + nu) * (1.0 - DEPTHS * angle)
+    return 1.0 / max(float(np.abs(along - across).max()), (1.0 - 2.0 * nu) / math.sqrt(3.0))
+
+
 @dataclass(frozen=True, eq=False)
 class PlasticStep:
     """What points answer at the end of a step, of any shape (...): ``stress`` (5, ...) by the components of the

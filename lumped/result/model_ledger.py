@@ -13,6 +13,7 @@ from lumped.load_curves.base import LoadCurve
 from lumped.materials import Relaxation
 from lumped.materials.energies.base import DEFAULT, energy_of
 from lumped.materials.friction import mismatch, slipping, stuck
+from lumped.materials.plasticity import first_yield
 from lumped.materials.radiation import Pulse, met_at_once
 from lumped.result.history import History
 from lumped.result.result import LedgerEntry, Quantity, percent
@@ -44,12 +45,12 @@ ENERGY_NAMES = {
 ROD_END = 0.65
 IN_AN_IMPACT = 0.5  # of the change at one depth, since what was brought is given
 ROWS, NEWTON = 200, 8  # steps in an impact that tells of a modulus, and of Newton's method in each
-# Hertz: the first yield, below the surface, is where the peak pressure is 1.6 Y (Johnson, ISBN 978-0-521-34796-9).
-FIRST_YIELD = 1.6
 LIKE_HALF_SPACES = (HalfSpace, SphereTarget, Plane)  # near the contact
 TIP = 1e-4  # rounding: of a tip's radius, where the gap beside it is a parabola to 1e-8
 ALMOST_FLAT = 1.0 + 1e-6  # rounding: exponent of the force below which a profile counts as flat
 FLOW = 0.047  # 1/(1 + FLOW ln^2 w): how force falls behind Hertz'; tests/fe/test_plastic.py finds it again
+# What a rim adds to that: it yields at any load, in a zone that grows as its square (Irwin), up to where all does.
+RIM = 0.03
 
 
 @dataclass(frozen=True)
@@ -435,7 +436,7 @@ def plasticity(scene: Scene | Indenter, model: Model, peak: Peak, share: float =
     """At the same depth F = F_Hertz/(1 + 0.047 ln^2 w), w the depth over that of first yield; of that a ``share``.
 
     What finite elements find without hardening at nu = 0.3, to a sixth for w = 1.5 to 30; Jackson and Green 2005 (doi
-    10.1115/1.1866166) to a tenth up to w = 100.
+    10.1115/1.1866166) to a tenth up to w = 100. A rim yields before.
     """
     effect, material = "plasticity", scene.geometry.material
     if model.plasticity:
@@ -445,9 +446,12 @@ def plasticity(scene: Scene | Indenter, model: Model, peak: Peak, share: float =
     if peak.contact_radius == 0.0:
         return LedgerEntry(effect, "neglected", 0.0)
     pressure = 1.5 * peak.force / (math.pi * peak.contact_radius**2)
-    over = pressure / (FIRST_YIELD * material.yield_strength)
+    limit = first_yield(material.nu)
+    over = pressure / (limit * material.yield_strength)
     softer = FLOW * math.log(max(over, 1.0) ** 2) ** 2
-    change, note = share * softer / (1.0 + softer), f"p0/(1.6 Y) = {over:.3g}"
+    if scene.target.fixed_radius(scene.geometry.shape) is not None:
+        softer += RIM * min(over, 1.0) ** 2
+    change, note = share * softer / (1.0 + softer), f"p0/({limit:.3g} Y) = {over:.3g}"
     impacts = scene.motion.impacts if isinstance(scene, Scene) else 1
     refused = plasticity_faults("", replace(model, plasticity=True), scene.geometry, impacts)
     if refused:

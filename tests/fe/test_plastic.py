@@ -594,6 +594,22 @@ def test_forces_lie_among_the_published_ones_and_where_the_ledger_says() -> None
 
 
 @pytest.mark.tenth
+@pytest.mark.parametrize(("nu", "strength"), [(-0.74, 0.7), (0.0, 0.4)])
+def test_a_peak_loses_what_the_ledger_says_whatever_the_ratio_of_poisson(nu: float, strength: float) -> None:
+    """To a factor of two, twice as hard pressed as where it first yields or so: sooner where nu is negative."""
+    material = {"law": "elastic", "E": 1e9, "nu": nu, "yield_strength": 1e12}
+    striker = {"shape": "sphere", "radius": 0.01, "mass": 0.05, "velocity": 0.2}
+    scene = Scene.from_dict({"striker": striker, "target": {"shape": "half_space", "material": material}})
+    hertz = scene.profile.hertz_impact(scene.contact_modulus.spring, scene.mass, scene.velocity)
+    pressure = 1.5 * hertz.force / (math.pi * hertz.contact_radius**2)
+    own = scene.changed({"target.material.yield_strength": strength * pressure})
+    still, flows = (fe_contact.run(one, tolerance=1e-2) for one in (own, own.changed({"model.plasticity": True})))
+    peaks = [one.quantities["peak_force"].value or math.nan for one in (still, flows)]
+    (entry,) = [one for one in still.model_ledger if one.effect == "plasticity"]
+    assert 0.5 < (entry.estimate or 0.0) / (1.0 - peaks[1] / peaks[0]) < 2.0
+
+
+@pytest.mark.tenth
 def test_a_cone_is_self_similar() -> None:
     """No length: F ~ depth^2, whatever it flows."""
     found = pressed([1e-6, 4e-6], COARSEST, shape="cone", angle=2.0)

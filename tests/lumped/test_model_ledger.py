@@ -13,6 +13,7 @@ from scipy.integrate import quad, solve_ivp
 
 from lumped import LedgerEntry, Material, Model, Relaxation, Scene, Sphere, laws, simulate
 from lumped.errors import BadInput
+from lumped.materials.plasticity import first_yield
 from lumped.materials.radiation import SINE_PULSE, line_coefficient, pulse_energy, radiation_coefficient
 from lumped.result.model_ledger import Peak, ends, finite_strain, ledger_at_rest, model_ledger, of_dent
 from lumped.result.result import ABOVE, NO_KEY, OPEN, UNKNOWN, WITHIN, good_to, sufficient
@@ -143,13 +144,21 @@ def test_a_punch_a_rounding_wider_than_it_is_strains_as_much() -> None:
 
 
 def test_yielding_starts_at_its_threshold() -> None:
-    # audit 2.2: p0 = 3.30 GPa at 66.2 N, elastic only if Y > 2.06 GPa
-    for strength, yields in ((2.1e9, False), (2.0e9, True), (5e8, True)):
+    # audit 2.2: p0 = 3.30 GPa at 66.2 N; Jackson and Green 2005: C = 1.295 exp(0.736 nu) = 1.534, so that Y = 2.15 GPa
+    for strength, yields in ((2.16e9, False), (2.14e9, True), (5e8, True)):
         scene = Scene.load("steel-ball", {"target.material.yield_strength": strength})
         estimate = entry(scene, "plasticity").estimate
         assert estimate is not None
         assert (estimate > 0.0) is yields
         assert estimate < 1.0
+
+
+def test_a_contact_first_yields_as_published_and_at_its_edge_where_nothing_is_squeezed_out() -> None:
+    """Jackson and Green 2005, doi 10.1115/1.1866166: C = 1.295 exp(0.736 nu); Hertz's edge is in shear, (1 - 2 nu)/3."""
+    for nu in (0.0, 0.15, 0.3, 0.45):
+        assert first_yield(nu) == pytest.approx(1.295 * math.exp(0.736 * nu), rel=5e-3)
+    for nu in (-0.9, -0.5):
+        assert first_yield(nu) == pytest.approx(3.0 / (math.sqrt(3.0) * (1.0 - 2.0 * nu)))
 
 
 def test_adhesion_and_strain_are_simple_ratios() -> None:
