@@ -21,15 +21,21 @@ OFTEN = np.array([1.0, 2.0, 1.0, 1.0])
 VOLUME = np.array([1.0, 0.0, 0.0, 1.0, 1.0])  # of a gradient: its trace
 
 
-DEPTHS = np.linspace(0.0, 1.0, 201)  # over the contact radius: Hertz' contacts yield first within, C to 1e-5
+DEPTHS = np.linspace(0.0, 1.5, 301)  # over the contact radius: Hertz' contacts yield first within, C to 1e-5
 
 
-def first_yield(nu: float) -> float:
+def first_yield(nu: float, plane: bool = False) -> float:
     """C: a Hertz contact first yields, by von Mises, where its peak pressure is C Y; 1.61 at nu = 0.3, 0.67 at -0.8.
 
     The largest stress on the axis (Johnson, ISBN 978-0-521-34796-9, eq. 3.45) or, for nu below -0.3, at the edge of the
-    contact, where (1 - 2 nu)/3 of the pressure pulls outwards and pushes around.
+    contact, where (1 - 2 nu)/3 of the pressure pulls outwards and pushes around. In ``plane`` strain beneath the middle
+    (eq. 4.46); 1.79 at nu = 0.3.
     """
+    if plane:
+        root = np.sqrt(1.0 + DEPTHS**2)
+        along, across = -1.0 / root, 2.0 * DEPTHS - (1.0 + 2.0 * DEPTHS**2) / root
+        held = nu * (along + across)
+        return 1.0 / float(np.sqrt(0.5 * ((along - across) ** 2 + (across - held) ** 2 + (held - along) ** 2)).max())
     angle = np.arctan2(1.0, DEPTHS)
     along, across = -1.0 / (1.0 + DEPTHS**2), 0.5 / (1.0 + DEPTHS**2) - (1.0 + nu) * (1.0 - DEPTHS * angle)
     return 1.0 / max(float(np.abs(along - across).max()), (1.0 - 2.0 * nu) / math.sqrt(3.0))

@@ -10,10 +10,9 @@ from typing import overload
 
 from lumped.errors import FeContactError
 from lumped.load_curves.base import LoadCurve
-from lumped.materials import Relaxation
+from lumped.materials import Material, Relaxation
 from lumped.materials.energies.base import DEFAULT, energy_of
 from lumped.materials.friction import mismatch, slipping, stuck
-from lumped.materials.plasticity import first_yield
 from lumped.materials.radiation import Pulse, met_at_once
 from lumped.result.history import History
 from lumped.result.result import LedgerEntry, Quantity, percent
@@ -163,15 +162,15 @@ def _left_out_or_met(geometry: Geometry, pulse: Pulse) -> tuple[float | None, st
     pressed.
 
     Beside a half-space, into which that spreads, it stands alone; in a column, from whose base it comes back, it adds
-    to what presses: by sqrt(M/m) of a mass M under a striker m (Saint-Venant; Timoshenko and Goodier, ISBN
-    978-0-07-085805-3, art. 169).
+    to what presses: by sqrt(M/m) of a mass M under a striker m, which meets twice as much at least with its echo
+    (Saint-Venant; Timoshenko and Goodier, ISBN 978-0-07-085805-3, art. 169).
     """
     estimate, note = geometry.target.inertia_left_out(geometry.shape, geometry.material, pulse)
     area, comes_back = geometry.target.met_flat(geometry.shape)
     met = met_at_once(geometry.material, pulse, area) if area else None
     if estimate is None or met is None:
         return estimate, note
-    more = met if comes_back else met - 1.0
+    more = max(met, 2.0 * met - 1.0) if comes_back else met - 1.0
     return (more, f"a flat end meets {percent(met)} of it at the touch") if more > estimate else (estimate, note)
 
 
@@ -436,27 +435,52 @@ def plasticity(scene: Scene | Indenter, model: Model, peak: Peak, share: float =
     """At the same depth F = F_Hertz/(1 + 0.047 ln^2 w), w the depth over that of first yield; of that a ``share``.
 
     What finite elements find without hardening at nu = 0.3, to a sixth for w = 1.5 to 30; Jackson and Green 2005 (doi
-    10.1115/1.1866166) to a tenth up to w = 100. A rim yields before.
+    10.1115/1.1866166) to a tenth up to w = 100. A rim yields before; of two bodies the one that does so first counts.
     """
-    effect, material = "plasticity", scene.geometry.material
+    effect, geometry = "plasticity", scene.geometry
+    shape, target = geometry.shape, geometry.target
     if model.plasticity:
         return LedgerEntry(effect, "included", 0.0)
-    if material.yield_strength is None:
-        return LedgerEntry(effect, "neglected", None, f"needs {scene.target.owner}.material.yield_strength")
-    if peak.contact_radius == 0.0:
-        return LedgerEntry(effect, "neglected", 0.0)
-    pressure = 1.5 * peak.force / (math.pi * peak.contact_radius**2)
-    limit = first_yield(material.nu)
-    over = pressure / (limit * material.yield_strength)
-    softer = FLOW * math.log(max(over, 1.0) ** 2) ** 2
-    if scene.target.fixed_radius(scene.geometry.shape) is not None:
-        softer += RIM * min(over, 1.0) ** 2
-    change, note = share * softer / (1.0 + softer), f"p0/({limit:.3g} Y) = {over:.3g}"
+    ratios = list[tuple[float, Material]]()
+    for part, material in reversed(geometry.yielding):
+        if material.yield_strength is None:
+            return LedgerEntry(effect, "neglected", None, f"needs {part}.material.yield_strength")
+        stress = target.mises(shape, material.nu, peak.force, peak.contact_radius) if peak.contact_radius else 0.0
+        ratios.append((stress / material.yield_strength, material))
+    over, material = max(ratios, key=lambda one: one[0])
+    if target.sides(shape):
+        change = yielded_alike(over, material, target.sides(shape) == "free", struck=share < 1.0)
+    else:
+        softer = FLOW * math.log(max(over, 1.0) ** 2) ** 2
+        if target.fixed_radius(shape) is not None:
+            softer += RIM * min(over, 1.0) ** 2
+        change = share * softer / (1.0 + softer)
+    note = f"von Mises finds {over:.3g} Y where it is elastic"
     impacts = scene.motion.impacts if isinstance(scene, Scene) else 1
     refused = plasticity_faults("", replace(model, plasticity=True), scene.geometry, impacts)
     if refused:
         return LedgerEntry(effect, "neglected", change, f"{note}; {refused[0]}")
     return LedgerEntry(effect, "neglected", change, note, "model.plasticity", value=True)
+
+
+def yielded_alike(over: float, material: Material, free: bool, struck: bool) -> float:
+    """What a block loses whose stress would be so many times what it yields at: at that depth, or ``struck`` by what
+    brings the work. Beyond it follows with H/(E + H) of its stiffness, or with its sides held as its bulk does and
+    H/(3 G + H) of its shear.
+    """
+    if over <= 1.0:
+        return 0.0
+    young, hardening = material.young.spring, material.hardening_modulus or 0.0
+    shear = young / (2.0 * (1.0 + material.nu))
+    flows = hardening / (3.0 * shear + hardening) if hardening else 0.0
+    if free:
+        tangent = hardening / (young + hardening) if hardening else 0.0
+    else:
+        volume = (1.0 + material.nu) / (3.0 * (1.0 - material.nu))  # share of the bulk in K + 4 G/3
+        tangent = volume + (1.0 - volume) * flows
+    if struck:
+        return 1.0 - math.sqrt(1.0 / over**2 + tangent * (1.0 - 1.0 / over**2))
+    return (1.0 - tangent) * (1.0 - 1.0 / over)
 
 
 def adhesion(scene: Scene, peak: Peak) -> LedgerEntry:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material
+from lumped.materials.plasticity import first_yield
 from lumped.materials.radiation import Pulse, radiated_share
 from lumped.numbers import Array
 from lumped.schema import Table
@@ -138,6 +139,18 @@ class Target(Record, ABC):
         if share is not None:
             return min(LOST_FORCE * share, 1.0), f"radiates {min(share, 1.0):.2g} of the kinetic energy"
         return None, self.needs_density if material.density is None else NO_SPEED
+
+    def mises(self, shape: Shape, nu: float, force: float, contact_radius: float) -> float:
+        """Largest stress in an elastic contact, by von Mises, Pa: Hertz' of a peak pressure of 3/2 the mean; 4/pi of a
+        line's.
+        """
+        if shape.plane:
+            return 2.0 * force / (math.pi * contact_radius * shape.total) / first_yield(nu, plane=True)
+        return 1.5 * force / (math.pi * contact_radius**2) / first_yield(nu)
+
+    def sides(self, shape: Shape) -> str:
+        """What holds the sides of what is strained alike everywhere, "free" or "confined"; empty where nothing is."""
+        return ""
 
     def met_flat(self, shape: Shape) -> tuple[float, bool]:
         """Area, m2, that is met at once, and whether its echoes come back before they have spread. A half-space's."""

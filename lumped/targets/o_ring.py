@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault
 from lumped.materials import Material
+from lumped.materials.plasticity import first_yield
 from lumped.materials.radiation import Pulse
 from lumped.numbers import Array
 from lumped.schema.keys import Key, Part
@@ -66,6 +67,11 @@ class ORing(Target):
         mass = material.density * 2.0 * math.pi**2 * self.mean_radius * self.section_radius**2
         added = 0.25 * (1.0 + (material.nu / (1.0 - material.nu)) ** 2) * mass / pulse.mass
         return min(added, 1.0), MOVES.format(added)
+
+    def mises(self, shape: Shape, nu: float, force: float, contact_radius: float) -> float:
+        """As of a line around it."""
+        pressure = force / (math.pi**2 * contact_radius * self.mean_radius)
+        return pressure / first_yield(nu, plane=True)
 
     def met_flat(self, shape: Shape) -> tuple[float, bool]:
         """Nothing: the section is round."""

@@ -42,7 +42,8 @@ class Plane(Target):
     def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
         """What a ball's :func:`vibrations` leave; a block's own waves add their density c v to its pressure.
 
-        That is v sqrt(E A M/l), M its own mass, beside v sqrt(E A m/l) of the striker's m.
+        That is v sqrt(E A M/l), M its own mass, beside v sqrt(E A m/l) of the striker's m; a heavy one meets the plane
+        with three times as much at least, with the echo of what is on its far face (Saint-Venant).
         """
         if material.density is None:
             return None, self.needs_density
@@ -50,7 +51,18 @@ class Plane(Target):
         if whole is not None:
             return vibrations(material, pulse, whole)
         own = shape.own_mass(material.density) / pulse.mass
-        return min(math.sqrt(own), 1.0), f"waves of a block that has {own:.2g} of the striker's mass"
+        met = math.sqrt(own)
+        return max(met, 3.0 * met - 1.0), f"waves of a block that has {own:.2g} of the striker's mass"
+
+    def mises(self, shape: Shape, nu: float, force: float, contact_radius: float) -> float:
+        """A block's is its pressure, less (1 - 2 nu)/(1 - nu) of it where its sides are held."""
+        if not isinstance(shape, Block):
+            return super().mises(shape, nu, force, contact_radius)
+        return force / shape.area * (1.0 if shape.sides == "free" else (1.0 - 2.0 * nu) / (1.0 - nu))
+
+    def sides(self, shape: Shape) -> str:
+        """A block's."""
+        return shape.sides if isinstance(shape, Block) else ""
 
     def met_flat(self, shape: Shape) -> tuple[float, bool]:
         """Nothing more: a block tells its own."""

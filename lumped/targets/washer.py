@@ -50,9 +50,21 @@ class Washer(Target):
         added = share * material.density * 2.0 * half * around * self.height / pulse.mass
         return min(added, 1.0), MOVES.format(added)
 
+    def covered(self, shape: Shape) -> float:
+        """Area that is pressed, m2."""
+        return math.pi * ((self.fixed_radius(shape) or 0.0) ** 2 - self.inner_radius**2)
+
+    def mises(self, shape: Shape, nu: float, force: float, contact_radius: float) -> float:
+        """As of a column with free sides."""
+        return force / self.covered(shape)
+
+    def sides(self, shape: Shape) -> str:
+        """Free, as :meth:`strains` has them."""
+        return "free"
+
     def met_flat(self, shape: Shape) -> tuple[float, bool]:
         """A column's, of what is covered."""
-        return math.pi * ((self.fixed_radius(shape) or 0.0) ** 2 - self.inner_radius**2), True
+        return self.covered(shape), True
 
     def strains(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> StrainField:
         """Alike everywhere, its sides free: a bonded base holds them less than it seems.

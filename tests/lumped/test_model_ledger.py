@@ -15,6 +15,7 @@ from lumped import LedgerEntry, Material, Model, Relaxation, Scene, Sphere, laws
 from lumped.errors import BadInput
 from lumped.materials.plasticity import first_yield
 from lumped.materials.radiation import SINE_PULSE, line_coefficient, pulse_energy, radiation_coefficient
+from lumped.numbers import Array
 from lumped.result.model_ledger import Peak, ends, finite_strain, ledger_at_rest, model_ledger, of_dent
 from lumped.result.result import ABOVE, NO_KEY, OPEN, UNKNOWN, WITHIN, good_to, sufficient
 from lumped.scene.geometry import Geometry
@@ -159,6 +160,69 @@ def test_a_contact_first_yields_as_published_and_at_its_edge_where_nothing_is_sq
         assert first_yield(nu) == pytest.approx(1.295 * math.exp(0.736 * nu), rel=5e-3)
     for nu in (-0.9, -0.5):
         assert first_yield(nu) == pytest.approx(3.0 / (math.sqrt(3.0) * (1.0 - 2.0 * nu)))
+
+
+def test_a_line_contact_first_yields_as_published_whatever_its_length() -> None:
+    """Green 2005, doi 10.1016/j.ijmecsci.2005.04.002: 1/sqrt(1 - 4 nu + 4 nu^2), from 0.194 on 1.164 + 2.975 nu -
+    2.906 nu^2.
+    """
+    for nu, known in ((0.0, 1.0), (0.1, 1.25), (0.25, 1.726), (0.3, 1.795), (0.45, 1.914)):
+        assert first_yield(nu, plane=True) == pytest.approx(known, rel=5e-3)
+    table = Scene.load("rod-in-ring", {"target.material.yield_strength": 1e5})
+    known = [model_ledger(table.changed({"striker.length": x}), Peak(1e3 * x, 1e-5, 1e-3, 1e-3)) for x in (0.01, 1.0)]
+    short, long = (one.estimate for ledger in known for one in ledger if one.effect == "plasticity")
+    assert short == pytest.approx(long)
+    assert short is not None
+    assert short > 0.0, "1e3 N/m over 1 mm to either side: 0.64 MPa in the middle, 0.36 MPa by von Mises"
+
+
+@pytest.mark.parametrize("sides", ["free", "confined"])
+@pytest.mark.parametrize("hardening", [0.0, 3e5])
+def test_a_block_that_yields_is_charged_as_its_equation_of_motion_says(sides: str, hardening: float) -> None:
+    """A mass on a column that follows, from its yield on, with less than its stiffness, until the mass has come to rest.
+
+    Free by E H/(E + H); held sideways, radial return of a strain e along the motion alone: the deviator is
+    2 G (2/3 e) less what flows, q = Y + H a, a = (2 G e - Y)/(3 G + H).
+    """
+    young, nu, strength, height, area, mass, speed = 1e6, 0.3, 8e3, 0.02, 4e-4, 0.05, 0.3
+    shear, bulk = young / (2.0 * (1.0 + nu)), young / (3.0 * (1.0 - 2.0 * nu))
+    if sides == "free":
+        stress = _bilinear(young, strength, young * hardening / (young + hardening))
+    else:
+
+        def stress(e: float) -> float:
+            amount = max(2.0 * shear * e - strength, 0.0) / (3.0 * shear + hardening)
+            return bulk * e + 2.0 / 3.0 * (2.0 * shear * e - 3.0 * shear * amount)
+
+    def rests(_: float, y: Array) -> float:
+        return float(y[1])
+
+    rests.terminal = True  # type: ignore[attr-defined]
+    way = solve_ivp(
+        lambda _, y: [y[1], -area / mass * stress(y[0] / height)], (0, 1), [0, speed], events=rests, rtol=1e-9, atol=1e-12
+    )
+    table = {"law": "elastic", "E": young, "nu": nu, "yield_strength": strength, "hardening_modulus": hardening}
+    block = {"shape": "prism", "area": area, "height": height, "sides": sides, "mass": mass, "velocity": speed}
+    scene = Scene.from_dict({"striker": {**block, "material": table}, "target": {"shape": "plane"}})
+    elastic = simulate(laws.get("correspondence").of(scene), scene, 1e-4)
+    peak = elastic.quantities["peak_force"].value or math.nan
+    (found,) = [one for one in elastic.model_ledger if one.effect == "plasticity"]
+    assert found.estimate == pytest.approx(1.0 - area * stress(way.y[0, -1] / height) / peak, rel=1e-3)
+
+
+def _bilinear(young: float, strength: float, tangent: float) -> Callable[[float], float]:
+    """Stress over strain, Pa."""
+    return lambda e: min(young * e, strength + tangent * (e - strength / young))
+
+
+def test_of_two_bodies_the_softer_one_yields() -> None:
+    """And what one of them yields at is not known without the other's."""
+    scene, peak = Scene.load("two-spheres", {"target.material.yield_strength": 2e4}), Peak(1.0, 1e-4, 1e-3, 1e-2)
+    (unknown,) = [one for one in model_ledger(scene, peak) if one.effect == "plasticity"]
+    assert unknown.note == "needs striker.material.yield_strength"
+    pairs = [scene.changed({"striker.material.yield_strength": one}) for one in (1e4, 4e4, 8e4)]
+    alone = [one.estimate or 0.0 for pair in pairs for one in model_ledger(pair, peak) if one.effect == "plasticity"]
+    assert alone[0] > alone[1] == alone[2] > 0.0
 
 
 def test_adhesion_and_strain_are_simple_ratios() -> None:
