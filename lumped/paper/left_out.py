@@ -77,7 +77,7 @@ def ring_moved(examples: Examples) -> Values:
     estimates = [
         Ring(rod + ptmd.gap, thickness).inertia_left_out(
             Cylinder(rod, ring.width), Material(young, ring.nu, density), pulse
-        )[0]
+        ).size
         for thickness in ring.thickness
         for density in ring.density
     ]

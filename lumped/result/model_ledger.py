@@ -22,6 +22,7 @@ from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
 from lumped.shapes._block import Block
 from lumped.shapes.base import Shape
+from lumped.targets.base import LeftOut
 from lumped.targets.half_space import HalfSpace
 from lumped.targets.plane import Plane
 from lumped.targets.rod import Rod
@@ -143,7 +144,7 @@ def inertia(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
         return LedgerEntry(effect, "included", 0.0)
     mass, geometry = scene.reduced_mass, scene.geometry
     pulse = Pulse(peak.force, peak.duration, mass, 0.5 * mass * scene.velocity**2, peak.contact_radius)
-    estimate, note = _left_out_or_met(geometry, pulse)
+    found = _left_out_or_met(geometry, pulse)
     faults = changing_faults("", geometry)
     if scene.target.waves_under(geometry.shape):
         faults += flying_faults("", geometry, scene.mass, scene.target_mass)
@@ -153,11 +154,14 @@ def inertia(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
     if scene.motion.impacts > 1 and scene.target.rings_on(geometry.shape):
         refused.append("what rings on between contacts is followed in one impact")
     built = scene.target.waves_under(geometry.shape) and not (model.finite or refused)
-    said = note if note == scene.target.needs_density else "; ".join([note, *refused])
-    return LedgerEntry(effect, "neglected", estimate, said, "model.inertia" if built else "", value=built or None)
+    said = found.note if found.note == scene.target.needs_density else "; ".join([found.note, *refused])
+    key = "model.inertia" if built else ""
+    if found.size is not None and found.either:
+        return LedgerEntry(effect, "neglected", None, said, key, (-found.size, found.size), built or None)
+    return LedgerEntry(effect, "neglected", found.size, said, key, value=built or None)
 
 
-def _left_out_or_met(geometry: Geometry, pulse: Pulse) -> tuple[float | None, str]:
+def _left_out_or_met(geometry: Geometry, pulse: Pulse) -> LeftOut:
     """As the target knows it; more where a flat end meets density c v of it at once, which is there before anything is
     pressed.
 
@@ -165,13 +169,13 @@ def _left_out_or_met(geometry: Geometry, pulse: Pulse) -> tuple[float | None, st
     to what presses: by sqrt(M/m) of a mass M under a striker m, which meets twice as much at least with its echo
     (Saint-Venant; Timoshenko and Goodier, ISBN 978-0-07-085805-3, art. 169).
     """
-    estimate, note = geometry.target.inertia_left_out(geometry.shape, geometry.material, pulse)
+    left_out = geometry.target.inertia_left_out(geometry.shape, geometry.material, pulse)
     area, comes_back = geometry.target.met_flat(geometry.shape)
     met = met_at_once(geometry.material, pulse, area) if area else None
-    if estimate is None or met is None:
-        return estimate, note
+    if left_out.size is None or met is None:
+        return left_out
     more = max(met, 2.0 * met - 1.0) if comes_back else met - 1.0
-    return (more, f"a flat end meets {percent(met)} of it at the touch") if more > estimate else (estimate, note)
+    return LeftOut(more, f"a flat end meets {percent(met)} of it at the touch") if more > left_out.size else left_out
 
 
 def gravity(scene: Scene, model: Model, peak: Peak, mass: float) -> LedgerEntry:

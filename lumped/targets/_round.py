@@ -16,7 +16,7 @@ from lumped.numbers import Array
 from lumped.schema.keys import Choice, Key
 from lumped.shapes.base import SIZE, Shape
 from lumped.targets._strains import Pressed
-from lumped.targets.base import MOVES, Target, vibrations
+from lumped.targets.base import MOVES, LeftOut, Target, vibrations
 
 SUPPORTS = ("free", "held")
 SUPPORT = Key(Choice(SUPPORTS), "what balances the struck body")
@@ -53,7 +53,7 @@ class RoundTarget(Target):
         known = super().pressed(shape, nu, depth, contact_radius)
         return replace(known, depth=0.5 * depth, thickness=self.radius, base="sliding", moving=False)
 
-    def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
+    def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> LeftOut:
         """A half-space's where it is taken as one; of a free body what :func:`vibrations` leave.
 
         Held at its middle plane, a third of its half moves with the striker.
@@ -64,7 +64,7 @@ class RoundTarget(Target):
         if self.support == "free":
             return vibrations(material, pulse, whole)
         added = whole / 6.0 / pulse.mass
-        return min(added, 1.0), MOVES.format(added)
+        return LeftOut(min(added, 1.0), MOVES.format(added))
 
     def yielding_faults(self, source: str, shape: Shape, inertia: bool) -> list[Fault]:
         """Nothing: it is struck by its like."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,6 +25,16 @@ from lumped.targets._strains import Pressed, StrainField
 NO_SPEED = "a dashpot alone has no wave speed"
 MOVES = "{:.2g} of the striker's mass moves with it"
 LOST_FORCE = 0.3  # of the peak, relatively, over the share of the energy that is lost
+
+
+class LeftOut(NamedTuple):
+    """What a contact errs by in its peak force without the body's inertia, relatively, None where that is not known,
+    and a note; `either`: whether up or down is not known.
+    """
+
+    size: float | None
+    note: str
+    either: bool = False
 
 
 @dataclass(frozen=True)
@@ -129,16 +139,16 @@ class Target(Record, ABC):
         """Elastic contact time of a mass, kg, s, where a half-space would answer in `local`; here the same."""
         return local
 
-    def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
-        """What a contact without the body's inertia errs by in its peak force, relatively, and a note.
-
-        Here as on the half-space: waves take the share w of the energy, half of it before the peak, and
-        F ~ energy^(3/5) loses 0.3 w, as does nearly a line's F ~ energy^(1/2). None where it is not known.
+    def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> LeftOut:
+        """Here as on the half-space: waves take the share w of the energy, half of it before the peak, and
+        F ~ energy^(3/5) loses 0.3 w, as does nearly a line's F ~ energy^(1/2).
         """
-        share = radiated_share(material, pulse, shape.total if shape.plane else None)
-        if share is not None:
-            return min(LOST_FORCE * share, 1.0), f"radiates {min(share, 1.0):.2g} of the kinetic energy"
-        return None, self.needs_density if material.density is None else NO_SPEED
+        found = radiated_share(material, pulse, shape.total if shape.plane else None)
+        if found is None:
+            return LeftOut(None, self.needs_density if material.density is None else NO_SPEED)
+        said = f"radiates {min(found.share, 1.0):.2g} of the kinetic energy"
+        said = f"{said}, and its material takes most of that" if found.lost else said
+        return LeftOut(min(LOST_FORCE * found.share, 1.0), said, found.lost)
 
     def mises(self, shape: Shape, nu: float, force: float, contact_radius: float) -> float:
         """Largest stress in an elastic contact, by von Mises, Pa: Hertz' of a peak pressure of 3/2 the mean; 4/pi of a
@@ -224,13 +234,13 @@ class Target(Record, ABC):
         return {"shape": self.name} | written(self)
 
 
-def vibrations(material: Material, pulse: Pulse, whole: float) -> tuple[float | None, str]:
+def vibrations(material: Material, pulse: Pulse, whole: float) -> LeftOut:
     """A free ball's own, of its whole mass, kg: v/c in order of magnitude, as what is left of them (Rayleigh 1906).
 
     They answer the kinks with which a force t^(3/2) begins and ends: (time of a wave / contact time)^5 ~ v/c.
     """
     stiffness = material.young.spring
     if material.density is None or not stiffness:
-        return None, NO_SPEED
+        return LeftOut(None, NO_SPEED)
     share = math.sqrt(2.0 * pulse.energy / whole) / math.sqrt(stiffness / material.density)
-    return min(share, 1.0), "order of magnitude: v/c, of the ball's own vibrations"
+    return LeftOut(min(share, 1.0), "order of magnitude: v/c, of the ball's own vibrations")

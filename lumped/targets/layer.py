@@ -21,7 +21,7 @@ from lumped.materials.radiation import Pulse
 from lumped.schema.keys import Choice, Key, Number, Part
 from lumped.shapes.base import Shape
 from lumped.targets._strains import Pressed
-from lumped.targets.base import MOVES, FreeEnd, Target
+from lumped.targets.base import MOVES, FreeEnd, LeftOut, Target
 
 # m_a/(density area thickness) of a thick layer: what nu = 0 has, and what a bonded and a sliding base add times s^2;
 # static fields by finite elements, within a tenth down to contacts a tenth as wide as the layer is thick.
@@ -101,22 +101,22 @@ class Layer(Target):
             reason = f"{shape.name}: its flat end is {shape.flat_radius:g} m wide; accepted below {self.widest:g} m"
             raise BadInput(Fault(source, "striker.shape", f"{reason}, {WIDE}"))
 
-    def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
+    def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> LeftOut:
         """What of the layer moves with the striker adds m_a to its mass m: the peak force falls by m_a/m.
 
         A thick one is a half-space: the smaller of the two.
         """
-        radiated, note = super().inertia_left_out(shape, material, pulse)
+        radiated = super().inertia_left_out(shape, material, pulse)
         if material.density is None:
-            return radiated, note
+            return radiated
         plate, a = math.sqrt(material.contact_modulus().spring / material.density), pulse.radius
         way = 0.25 * plate * pulse.duration / self.thickness  # half as far as its waves go until the peak
         share = moving_share(material.nu, self.base, a / self.thickness, way, shape.plane)
         area = 2.0 * a * shape.total if shape.plane else math.pi * a**2
         added = share * material.density * area * self.thickness / pulse.mass
-        if radiated is not None and radiated <= added:
-            return radiated, note
-        return added, MOVES.format(added)
+        if radiated.size is not None and radiated.size <= added:
+            return radiated
+        return LeftOut(added, MOVES.format(added))
 
 
 MEMBER = Part(Layer)

@@ -18,7 +18,7 @@ from lumped.schema.keys import Key, Part
 from lumped.shapes.base import SIZE, Shape
 from lumped.shapes.sphere import Sphere
 from lumped.targets._strains import Pressed
-from lumped.targets.base import MOVES, Target
+from lumped.targets.base import MOVES, LeftOut, Target
 
 
 @dataclass(frozen=True)
@@ -60,13 +60,13 @@ class ORing(Target):
         known, half = super().pressed(shape, nu, depth, min(contact_radius, self.section_radius)), self.lead * depth
         return replace(known, depth=half, plane=True, thickness=self.section_radius, base="sliding", moving=False)
 
-    def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
+    def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> LeftOut:
         """The section's middle moves half as fast as the striker, and its sides out as fast where the volume stays."""
         if material.density is None:
-            return None, self.needs_density
+            return LeftOut(None, self.needs_density)
         mass = material.density * 2.0 * math.pi**2 * self.mean_radius * self.section_radius**2
         added = 0.25 * (1.0 + (material.nu / (1.0 - material.nu)) ** 2) * mass / pulse.mass
-        return min(added, 1.0), MOVES.format(added)
+        return LeftOut(min(added, 1.0), MOVES.format(added))
 
     def mises(self, shape: Shape, nu: float, force: float, contact_radius: float) -> float:
         """As of a line around it."""

@@ -15,7 +15,7 @@ from lumped.shapes._block import Block
 from lumped.shapes.base import Shape
 from lumped.shapes.sphere import RoundShape
 from lumped.targets._strains import StrainField, alike
-from lumped.targets.base import Target, vibrations
+from lumped.targets.base import LeftOut, Target, vibrations
 
 
 @dataclass(frozen=True)
@@ -39,20 +39,20 @@ class Plane(Target):
         known = replace(self.pressed(shape, nu, depth, contact_radius), moving=False)
         return replace(known, thickness=shape.tip_radius or math.inf, base="sliding").strains()
 
-    def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
+    def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> LeftOut:
         """What a ball's :func:`vibrations` leave; a block's own waves add their density c v to its pressure.
 
         That is v sqrt(E A M/l), M its own mass, beside v sqrt(E A m/l) of the striker's m; a heavy one meets the plane
         with three times as much at least, with the echo of what is on its far face (Saint-Venant).
         """
         if material.density is None:
-            return None, self.needs_density
+            return LeftOut(None, self.needs_density)
         whole = shape.whole_mass(material.density)
         if whole is not None:
             return vibrations(material, pulse, whole)
         own = shape.own_mass(material.density) / pulse.mass
         met = math.sqrt(own)
-        return max(met, 3.0 * met - 1.0), f"waves of a block that has {own:.2g} of the striker's mass"
+        return LeftOut(max(met, 3.0 * met - 1.0), f"waves of a block that has {own:.2g} of the striker's mass")
 
     def mises(self, shape: Shape, nu: float, force: float, contact_radius: float) -> float:
         """A block's is its pressure, less (1 - 2 nu)/(1 - nu) of it where its sides are held."""

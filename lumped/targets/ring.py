@@ -16,7 +16,7 @@ from lumped.materials.radiation import Pulse
 from lumped.numbers import Array
 from lumped.schema.keys import Key, Part
 from lumped.shapes.base import SIZE, Shape
-from lumped.targets.base import FreeEnd, Target
+from lumped.targets.base import FreeEnd, LeftOut, Target
 from lumped.targets.layer import Layer
 
 # Inner radius over thickness: the waves in the annulus' answer grow with it, and with them the time, to seconds here.
@@ -64,7 +64,7 @@ class Ring(Target):
         """By the Fourier series of the annulus."""
         return RodInRing(shape.tip_radius or 0.0, self.inner_radius, self.thickness, nu)
 
-    def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
+    def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> LeftOut:
         """A layer's, held by the outer surface."""
         return Layer(self.thickness, "bonded").inertia_left_out(shape, material, pulse)
 

@@ -12,7 +12,7 @@ from lumped.materials import Material
 from lumped.materials.radiation import Pulse
 from lumped.schema.keys import Choice, Key, Number, Part
 from lumped.shapes.base import Shape
-from lumped.targets.base import LOST_FORCE, Target
+from lumped.targets.base import LOST_FORCE, LeftOut, Target
 
 # What comes back of a wave of velocity from the other end.
 ECHOES: Mapping[str, float] = {"fixed": -1.0, "free": 1.0, "absorbing": 0.0}
@@ -54,14 +54,14 @@ class Rod(Target):
         echo = 2.0 * self.length * math.sqrt(density / stiffness)
         return local + echo + math.pi * math.sqrt(mass * self.length / (stiffness * self.area))
 
-    def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
+    def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> LeftOut:
         """What goes down the rod before an echo, int F^2 dt/Z, as a share of the energy; half of it before the peak."""
         stiffness, density = material.uniaxial_modulus().spring, material.density
         if not stiffness or density is None:
             return super().inertia_left_out(shape, material, pulse)
         sent = HERTZ_SQUARE * pulse.force**2 * pulse.duration / self.impedance(stiffness, density)
         share = sent / pulse.energy
-        return min(LOST_FORCE * share, 1.0), f"sends {share:.2g} of the kinetic energy down the rod"
+        return LeftOut(min(LOST_FORCE * share, 1.0), f"sends {share:.2g} of the kinetic energy down the rod")
 
     def waves_under(self, shape: Shape) -> bool:
         """Always."""

@@ -12,7 +12,7 @@ from lumped.materials.radiation import Pulse
 from lumped.schema.keys import Key, Part
 from lumped.shapes.base import SIZE, Shape
 from lumped.targets._strains import StrainField, alike
-from lumped.targets.base import MOVES, Target
+from lumped.targets.base import MOVES, LeftOut, Target
 from lumped.targets.layer import BASE, moving_share
 
 
@@ -40,15 +40,15 @@ class Washer(Target):
         """Its height, m."""
         return self.height
 
-    def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
+    def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> LeftOut:
         """What of the washer moves with the striker, as under a line around it: a strip as wide as what is pressed."""
         if material.density is None:
-            return None, self.needs_density
+            return LeftOut(None, self.needs_density)
         radius = self.fixed_radius(shape) or 0.0
         half, around = 0.5 * (radius - self.inner_radius), math.pi * (radius + self.inner_radius)
         share = moving_share(material.nu, self.base, half / self.height, 0.0, plane=True)
         added = share * material.density * 2.0 * half * around * self.height / pulse.mass
-        return min(added, 1.0), MOVES.format(added)
+        return LeftOut(min(added, 1.0), MOVES.format(added))
 
     def covered(self, shape: Shape) -> float:
         """Area that is pressed, m2."""

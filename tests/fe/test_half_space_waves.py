@@ -284,3 +284,34 @@ def test_a_rigid_ball_may_bounce_and_one_that_rings_on_may_not() -> None:
     mass = 4.0 / 3.0 * math.pi * bouncing.shape.tip_radius**3 * bouncing.material.density
     with pytest.raises(BadInput, match="rings on"):
         half_space.check(replace(bouncing, mass=mass, striker_material=bouncing.material))
+
+
+@pytest.mark.tenth
+@pytest.mark.parametrize(
+    ("material", "known"),
+    [
+        ({"law": "sls", "E0": 1e6, "R1": 5.0, "R2": 6e-4, "density": 2e4}, True),
+        ({"law": "sls", "E0": 1e6, "R1": 20.0, "R2": 1.2e-3, "density": 4e4}, False),
+        ({"law": "kelvin_voigt", "E": 1e6, "eta": 1.8e3, "density": 2.5e4}, False),
+        ({"law": "kelvin_voigt", "E": 1e6, "eta": 6e3, "density": 2e4}, False),
+    ],
+    ids=["sent off", "lost", "damped", "overdamped"],
+)
+def test_what_a_material_takes_of_a_wave_tells_how_well_the_ledger_knows_inertia(
+    material: dict[str, Any], known: bool
+) -> None:
+    """A peak falls by what is radiated, to a half more or less; where most of that is lost it may rise as well."""
+    striker = {"shape": "sphere", "radius": 0.01, "mass": 0.01, "velocity": 0.05}
+    target = {"shape": "half_space", "material": {**material, "nu": 0.3}}
+    scene = Scene.from_dict({"striker": striker, "target": target})
+    still, moves = (simulate(one, "fe", {}, 1e-2) for one in (scene, scene.changed({"model.inertia": True})))
+    (entry,) = [one for one in still.model_ledger if one.effect == "target inertia"]
+    own, larger = (one.quantities["peak_force"] for one in (still, moves))
+    change = (larger.value or 0.0) / (own.value or math.nan) - 1.0
+    bar = ((larger.error or 0.0) + (own.error or 0.0)) / (own.value or math.nan)
+    assert (entry.spread is None) is known
+    if known:
+        assert entry.estimate == pytest.approx(-change, rel=0.5)
+    else:
+        assert abs(change) - bar < entry.size < 1.0
+        assert "its material takes most of that" in entry.note
