@@ -169,8 +169,11 @@ def _left_out_or_met(geometry: Geometry, pulse: Pulse) -> LeftOut:
     to what presses: by sqrt(M/m) of a mass M under a striker m, which meets twice as much at least with its echo
     (Saint-Venant; Timoshenko and Goodier, ISBN 978-0-07-085805-3, art. 169).
     """
-    left_out = geometry.target.inertia_left_out(geometry.shape, geometry.material, pulse)
-    area, comes_back = geometry.target.met_flat(geometry.shape)
+    shape, target, striking = geometry.shape, geometry.target, geometry.striker_material
+    if striking is not None:
+        return target.left_out_of_both(shape, geometry.material, striking, pulse)
+    left_out = target.inertia_left_out(shape, geometry.material, pulse)
+    area, comes_back = target.met_flat(shape)
     met = met_at_once(geometry.material, pulse, area) if area else None
     if left_out.size is None or met is None:
         return left_out
@@ -517,7 +520,7 @@ def friction(scene: Scene | Indenter, model: Model, peak: Peak, impact: bool = F
     if coefficient == 0.0:
         return [LedgerEntry(effect, treated, 0.0)]
     if shape.plane or not isinstance(target, LIKE_HALF_SPACES):
-        what = "in plane strain" if shape.plane else f"on a {target.name}"
+        what = "in plane strain" if shape.plane else f"on {target.called or f'a {target.name}'}"
         return [LedgerEntry(effect, treated, None, f"no formula {what}")]
     if model.plasticity:
         return [LedgerEntry(effect, treated, None, "no formula for a body that yields")]

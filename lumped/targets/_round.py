@@ -66,6 +66,17 @@ class RoundTarget(Target):
         added = whole / 6.0 / pulse.mass
         return LeftOut(min(added, 1.0), MOVES.format(added))
 
+    def left_out_of_both(self, shape: Shape, material: Material, striking: Material, pulse: Pulse) -> LeftOut:
+        """Two half-spaces' where it is taken as one; else the larger of its own and the striker's vibrations."""
+        if self.support is None:
+            return super().left_out_of_both(shape, material, striking, pulse)
+        own = self.inertia_left_out(shape, material, pulse)
+        whole = None if striking.density is None else shape.whole_mass(striking.density) or pulse.mass
+        if own.size is None or whole is None:
+            return own if own.size is None else LeftOut(None, "needs striker.material.density")
+        other = vibrations(striking, pulse, whole)
+        return own if other.size is not None and other.size <= own.size else other
+
     def yielding_faults(self, source: str, shape: Shape, inertia: bool) -> list[Fault]:
         """Nothing: it is struck by its like."""
         return []

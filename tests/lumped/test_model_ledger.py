@@ -472,3 +472,25 @@ def test_a_rods_dent_is_as_deep_as_its_contact_is_wide(striker: dict[str, object
     peak = of_dent(scene, Peak(100.0, 1e-2, 1.5e-3, 1e-4))
     assert float(scene.profile.load_curve.contact_radius(peak.depth)) == pytest.approx(1.5e-3, rel=1e-9)
     assert {"finite strain", "dent of the rod's end"} <= {entry.effect for entry in model_ledger(scene, peak)}
+
+
+def test_two_balls_send_off_what_each_of_them_does() -> None:
+    """As two half-spaces: of one material twice as much as one of them alone; and both densities are asked."""
+    peak, heavy = Peak(1.0, 1e-4, 1e-3, 1e-2), {"target.material.density": 100.0}
+    scene = Scene.load("two-spheres", heavy)
+    alike = replace(scene, striker_material=scene.material)
+    (both, *_), (unknown, *_) = model_ledger(alike, peak), model_ledger(scene, peak)
+    (alone, *_) = model_ledger(replace(scene, striker_material=None), peak)
+    assert both.estimate == pytest.approx(2.0 * (alone.estimate or math.nan))
+    assert (unknown.estimate, unknown.note) == (None, "needs striker.material.density")
+
+
+def test_of_two_free_balls_the_one_that_is_slower_to_answer_counts() -> None:
+    """v/c of the softer one, whichever it is."""
+    peak, mass = Peak(1.0, 1e-4, 1e-3, 1e-2), 4.1888e-3
+    keys = {f"{part}.material.density": 1000.0 for part in ("target", "striker")}
+    found = []
+    for soft in ("target", "striker"):
+        changes = {**keys, "striker.mass": mass, "target.mass": mass, f"{soft}.material.E": 1e5}
+        found.append(model_ledger(Scene.load("two-finite-spheres", changes), peak)[0].estimate)
+    assert found[0] == pytest.approx(found[1])
