@@ -134,9 +134,13 @@ def at_peak(scene: Scene, result: Result) -> tuple[Solid, Equilibrium]:
 
 
 def check_range(scene: Scene) -> None:
-    """Raise EquilibriumLost where an elastic material that softens does not take up what the striker brings."""
+    """Raise EquilibriumLost where an elastic material that softens does not take up what the striker brings.
+
+    Where lambda is negative, with nu, most energies soften.
+    """
     material = scene.geometry.material
-    if scene.model.finite and material.young.is_elastic and energy_of(material.hyperelastic).softens:
+    softens = energy_of(material.hyperelastic).softens or material.nu < 0.0
+    if scene.model.finite and material.young.is_elastic and softens:
         depth_reached(scene)
 
 

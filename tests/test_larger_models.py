@@ -44,6 +44,16 @@ def test_the_sufficient_model_takes_what_exceeds_the_tolerance_and_nothing_else(
     assert (found.scene.geometry.material.constant == "bulk") is (tolerance < 1e-1)
 
 
+def test_large_strains_in_which_a_material_softens_are_not_taken_in() -> None:
+    """Neo-Hooke, where nu is negative, gathers strains in bands: a run could not follow the cone to its depth."""
+    material = {"law": "elastic", "E": 4.4e9, "nu": -0.88}
+    striker = {"shape": "cone", "angle": 14.0, "mass": 0.45, "velocity": 0.27}
+    scene = Scene.from_dict({"striker": striker, "target": {"shape": "half_space", "material": material}})
+    found = sufficient(scene, {"tolerance": 1e-2})
+    assert found.scene is scene
+    assert "cannot be taken in: from a depth of" in found.left["finite strain"]
+
+
 def test_a_scene_that_needs_nothing_stays_as_it_is() -> None:
     scene = Scene.load("steel-ball")
     found = sufficient(scene, {})

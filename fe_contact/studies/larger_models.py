@@ -15,9 +15,10 @@ from dataclasses import asdict, dataclass, field, replace
 from fe_contact.budget.plan import scales
 from fe_contact.errors import faults_of
 from fe_contact.indentation import settings
+from fe_contact.large_strains import check_range
 from fe_contact.progress import Progress, silent
-from fe_contact.reference import check, expected, fe, plan
-from fe_contact.settings import Given, tolerance_of
+from fe_contact.reference import check, expected, fe, plan, with_waves
+from fe_contact.settings import Given, WaveNumerics, tolerance_of
 from fe_contact.studies.finite_length import free_ends
 from lumped.errors import FeContactError
 from lumped.materials.energies.base import DEFAULT
@@ -201,4 +202,8 @@ def _answered(scene: Scene, given: Given) -> Scene:
     with faults_of(scene):
         expected(scene, given)
         check(scene, given)
+        check_range(scene)
+        numerics = plan(scene, given).numerics
+        if isinstance(numerics, WaveNumerics):
+            with_waves(scene).cost(scene, numerics).check()
     return scene
