@@ -20,10 +20,14 @@ from lumped.materials.material import Material
 from lumped.numbers import Array
 
 NODES = 48  # of Gauss: both integrals to 1e-6, as twice as many tell
+# Power of a profile from which on it counts as flat, which is the most and for slip a tenth more: the depth that grown
+# punches leave ends there where beta is large, and digits with it.
+FLATTEST = 30.0
 
 
 def mismatch(body: Material, striking: Material | None) -> float:
-    """Dundurs' second parameter beta of a body and what strikes it, None: rigid; 0 of like ones, at most 1/2.
+    """Dundurs' second parameter beta of a body and what strikes it, None: rigid; 0 of like ones, at most 1/2, or 3/4
+    where nu is negative.
 
     Of the moduli at once; the larger one against something rigid where one of them is a dashpot alone.
     """
@@ -47,7 +51,7 @@ def stuck(beta: float, power: float) -> float:
     if beta == 0.0:
         return 1.0
     stiffer = math.atanh(beta) / beta
-    return stiffer if math.isinf(power) else stiffer * (_sinking(beta, power) / _sinking(0.0, power)) ** (-1.0 / power)
+    return stiffer if power > FLATTEST else stiffer * (_sinking(beta, power) / _sinking(0.0, power)) ** (-1.0 / power)
 
 
 def _sinking(beta: float, power: float) -> float:
@@ -68,7 +72,7 @@ def slipping(power: float) -> float:
     t, weight = _inside()
     angle = 0.5 * math.pi * t
     length = 0.5 * math.pi * (weight @ np.sqrt(1.0 - (np.sin(angle)[:, None] * t) ** 2))  # the elliptic integral E(t)
-    if math.isinf(power):
+    if power > FLATTEST:
         return 1.0 - 2.0 / math.pi
     return float(2.0 * (power + 1.0) / math.pi * (weight * t ** (power - 1.0)) @ (0.5 * math.pi - length))
 

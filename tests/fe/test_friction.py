@@ -161,3 +161,25 @@ def test_no_elastic_bound_is_told_of_what_yields() -> None:
     assert {one.effect: one for one in elastic}["friction"].spread is not None
     slippery = scene.changed({"target.material.friction": 0.0})
     assert {one.effect: one for one in model_ledger(slippery, peak)}["friction"].estimate == 0.0
+
+
+@pytest.mark.parametrize("poisson", [-0.9, -0.3, 0.3])
+def test_profiles_ever_flatter_come_to_a_punch(poisson: float) -> None:
+    """Firmer from power to power, and never more than under a flat end."""
+    powers = np.geomspace(1.0, 1e6, 60)
+    firmer = np.array([stuck(beta(poisson), float(power)) for power in powers])
+    slips = np.array([slipping(float(power)) for power in powers])
+    assert np.all(np.diff(firmer) >= 0.0)
+    assert np.all(np.diff(slips) >= 0.0)
+    assert firmer[-1] == stuck(beta(poisson), math.inf)
+    assert slips[-1] == slipping(math.inf)
+
+
+def test_a_rounded_punch_that_hardly_sinks_in_has_a_ledger_whatever_the_ratio_of_poisson() -> None:
+    """Its force is nearly in proportion to the depth: a very high power, of a body that hardly narrows."""
+    striker = {"shape": "rounded_punch", "flat_radius": 0.01, "edge_radius": 0.01, "mass": 1e-3, "velocity": 1e-4}
+    for poisson in (-0.9, -0.5, 0.3):
+        material = {"law": "elastic", "E": 1e9, "nu": poisson}
+        scene = Scene.from_dict({"striker": striker, "target": {"shape": "half_space", "material": material}})
+        (entry,) = [one for one in model_ledger(scene, Peak(1.0, 1e-6, 1e-2, 1e-5)) if one.effect == "friction"]
+        assert 0.0 < entry.size < 0.2
