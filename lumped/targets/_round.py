@@ -62,7 +62,7 @@ class RoundTarget(Target):
         if self.support is None or whole is None:
             return super().inertia_left_out(shape, material, pulse)
         if self.support == "free":
-            return vibrations(material, pulse, whole)
+            return vibrations(material, pulse)
         added = whole / 6.0 / pulse.mass
         return LeftOut(min(added, 1.0), MOVES.format(added))
 
@@ -71,10 +71,9 @@ class RoundTarget(Target):
         if self.support is None:
             return super().left_out_of_both(shape, material, striking, pulse)
         own = self.inertia_left_out(shape, material, pulse)
-        whole = None if striking.density is None else shape.whole_mass(striking.density) or pulse.mass
-        if own.size is None or whole is None:
+        if own.size is None or striking.density is None:
             return own if own.size is None else LeftOut(None, "needs striker.material.density")
-        other = vibrations(striking, pulse, whole)
+        other = vibrations(striking, pulse)
         return own if other.size is not None and other.size <= own.size else other
 
     def yielding_faults(self, source: str, shape: Shape, inertia: bool) -> list[Fault]:

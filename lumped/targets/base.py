@@ -243,13 +243,13 @@ class Target(Record, ABC):
         return {"shape": self.name} | written(self)
 
 
-def vibrations(material: Material, pulse: Pulse, whole: float) -> LeftOut:
-    """A free ball's own, of its whole mass, kg: v/c in order of magnitude, as what is left of them (Rayleigh 1906).
+def vibrations(material: Material, pulse: Pulse) -> LeftOut:
+    """A free ball's own: v/c in order of magnitude, as what is left of them (Rayleigh 1906).
 
     They answer the kinks with which a force t^(3/2) begins and ends: (time of a wave / contact time)^5 ~ v/c.
     """
     stiffness = material.young.spring
     if material.density is None or not stiffness:
         return LeftOut(None, NO_SPEED)
-    share = math.sqrt(2.0 * pulse.energy / whole) / math.sqrt(stiffness / material.density)
+    share = math.sqrt(2.0 * pulse.energy / pulse.mass) / math.sqrt(stiffness / material.density)
     return LeftOut(min(share, 1.0), "order of magnitude: v/c, of the ball's own vibrations")

@@ -47,9 +47,8 @@ class Plane(Target):
         """
         if material.density is None:
             return LeftOut(None, self.needs_density)
-        whole = shape.whole_mass(material.density)
-        if whole is not None:
-            return vibrations(material, pulse, whole)
+        if shape.whole_mass(material.density) is not None:
+            return vibrations(material, pulse)
         own = shape.own_mass(material.density) / pulse.mass
         met = math.sqrt(own)
         return LeftOut(max(met, 3.0 * met - 1.0), f"waves of a block that has {own:.2g} of the striker's mass")

@@ -486,11 +486,11 @@ def test_two_balls_send_off_what_each_of_them_does() -> None:
 
 
 def test_of_two_free_balls_the_one_that_is_slower_to_answer_counts() -> None:
-    """v/c of the softer one, whichever it is."""
+    """v/c of the softer one, whichever it is: 0.05 m/s over sqrt(1e5 Pa/1000 kg/m3), as they approach each other."""
     peak, mass = Peak(1.0, 1e-4, 1e-3, 1e-2), 4.1888e-3
     keys = {f"{part}.material.density": 1000.0 for part in ("target", "striker")}
     found = []
     for soft in ("target", "striker"):
         changes = {**keys, "striker.mass": mass, "target.mass": mass, f"{soft}.material.E": 1e5}
         found.append(model_ledger(Scene.load("two-finite-spheres", changes), peak)[0].estimate)
-    assert found[0] == pytest.approx(found[1])
+    assert found == pytest.approx([0.05 / 10.0, 0.05 / 10.0])
