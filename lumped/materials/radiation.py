@@ -69,8 +69,9 @@ def shear_speed(material: Material) -> float | None:
 
 
 class Radiated(NamedTuple):
-    """Share of the energy of a pulse, to first order, above 1 where that ends; `lost`: whether the material takes so much of a wave that it tells no more than
-    how large an effect is, not which way.
+    """Share of the energy of a pulse, to first order, above 1 where that ends.
+
+    `lost`: whether the material takes so much of a wave that it tells how large an effect is at most, not which way.
     """
 
     share: float

@@ -75,9 +75,9 @@ def ring_moved(examples: Examples) -> Values:
     mass, energy = 1.0 / (1.0 / ptmd.m1 + 1.0 / ptmd.m2), 0.5 * peak.force * peak.depth
     pulse = Pulse(peak.force, peak.duration, mass, energy, peak.contact_radius)
     estimates = [
-        Ring(rod + ptmd.gap, thickness).inertia_left_out(
-            Cylinder(rod, ring.width), Material(young, ring.nu, density), pulse
-        ).size
+        Ring(rod + ptmd.gap, thickness)
+        .inertia_left_out(Cylinder(rod, ring.width), Material(young, ring.nu, density), pulse)
+        .size
         for thickness in ring.thickness
         for density in ring.density
     ]

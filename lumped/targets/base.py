@@ -151,7 +151,7 @@ class Target(Record, ABC):
         return LeftOut(min(LOST_FORCE * found.share, 1.0), said, found.lost)
 
     def left_out_of_both(self, shape: Shape, material: Material, striking: Material, pulse: Pulse) -> LeftOut:
-        """The same where the striker is a body of a material, too: as of two half-spaces, which send off what each does."""
+        """The same where the striker has a material, too: as of two half-spaces, which send off what each does."""
         own, other = self.inertia_left_out(shape, material, pulse), self.inertia_left_out(shape, striking, pulse)
         if own.size is None or other.size is None:
             needs = "needs striker.material.density" if striking.density is None else NO_SPEED
@@ -160,8 +160,9 @@ class Target(Record, ABC):
         return LeftOut(both, f"{own.note}, its striker {other.note}", own.either or other.either)
 
     def mises(self, shape: Shape, nu: float, force: float, contact_radius: float) -> float:
-        """Largest stress in an elastic contact, by von Mises, Pa: Hertz' of a peak pressure of 3/2 the mean; 4/pi of a
-        line's.
+        """Largest stress in an elastic contact under a `force`, N, of `contact_radius`, m, by von Mises, Pa.
+
+        Hertz': the peak pressure is 3/2 of the mean, 4/pi of a line's.
         """
         if shape.plane:
             return 2.0 * force / (math.pi * contact_radius * shape.total) / first_yield(nu, plane=True)

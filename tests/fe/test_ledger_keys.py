@@ -210,11 +210,13 @@ def test_a_blocks_own_waves_press_as_the_ledger_says(campaign_size: Callable[[in
 
 @pytest.mark.parametrize("target", ["layer", "washer"])
 def test_a_flat_end_meets_a_wide_layer_as_a_block_meets_its_plane(target: str) -> None:
-    """Nothing moves sideways at nu = 0: the same column, whose waves are followed as a block's. Within a factor of 2."""
+    """Nothing moves sideways at nu = 0: the same column, whose waves are followed as a block's. To a factor of 2."""
     for density in (10.0, 100.0, 1000.0):
         pressed = {"law": "elastic", "E": 1e6, "nu": 0.0, "density": density}
         blow = {"mass": 0.1, "velocity": 0.02}
-        size = {"thickness": 2e-3} if target == "layer" else {"height": 2e-3, "inner_radius": 1e-6, "outer_radius": 0.05}
+        size = (
+            {"thickness": 2e-3} if target == "layer" else {"height": 2e-3, "inner_radius": 1e-6, "outer_radius": 0.05}
+        )
         struck = {"shape": target, "base": "bonded", "material": pressed, **size}
         flat = Scene.from_dict({"striker": {"shape": "punch", "radius": 0.05, **blow}, "target": struck})
         plate = {"shape": "plate", "area": math.pi * 0.05**2, "thickness": 2e-3, "material": pressed, **blow}

@@ -155,7 +155,7 @@ def test_yielding_starts_at_its_threshold() -> None:
 
 
 def test_a_contact_first_yields_as_published_and_at_its_edge_where_nothing_is_squeezed_out() -> None:
-    """Jackson and Green 2005, doi 10.1115/1.1866166: C = 1.295 exp(0.736 nu); Hertz's edge is in shear, (1 - 2 nu)/3."""
+    """Jackson and Green 2005, doi 10.1115/1.1866166: 1.295 exp(0.736 nu); Hertz's edge is in shear, (1 - 2 nu)/3."""
     for nu in (0.0, 0.15, 0.3, 0.45):
         assert first_yield(nu) == pytest.approx(1.295 * math.exp(0.736 * nu), rel=5e-3)
     for nu in (-0.9, -0.5):
@@ -163,8 +163,8 @@ def test_a_contact_first_yields_as_published_and_at_its_edge_where_nothing_is_sq
 
 
 def test_a_line_contact_first_yields_as_published_whatever_its_length() -> None:
-    """Green 2005, doi 10.1016/j.ijmecsci.2005.04.002: 1/sqrt(1 - 4 nu + 4 nu^2), from 0.194 on 1.164 + 2.975 nu -
-    2.906 nu^2.
+    """Beneath a line 1/sqrt(1 - 4 nu + 4 nu^2), from 0.194 on 1.164 + 2.975 nu - 2.906 nu^2 (Green 2005, Int. J. Appl.
+    Mech. Eng. 10, 451).
     """
     for nu, known in ((0.0, 1.0), (0.1, 1.25), (0.25, 1.726), (0.3, 1.795), (0.45, 1.914)):
         assert first_yield(nu, plane=True) == pytest.approx(known, rel=5e-3)
@@ -179,7 +179,7 @@ def test_a_line_contact_first_yields_as_published_whatever_its_length() -> None:
 @pytest.mark.parametrize("sides", ["free", "confined"])
 @pytest.mark.parametrize("hardening", [0.0, 3e5])
 def test_a_block_that_yields_is_charged_as_its_equation_of_motion_says(sides: str, hardening: float) -> None:
-    """A mass on a column that follows, from its yield on, with less than its stiffness, until the mass has come to rest.
+    """A mass on a column that follows, from its yield on, with less than its stiffness, until the mass is at rest.
 
     Free by E H/(E + H); held sideways, radial return of a strain e along the motion alone: the deviator is
     2 G (2/3 e) less what flows, q = Y + H a, a = (2 G e - Y)/(3 G + H).
@@ -199,7 +199,12 @@ def test_a_block_that_yields_is_charged_as_its_equation_of_motion_says(sides: st
 
     rests.terminal = True  # type: ignore[attr-defined]
     way = solve_ivp(
-        lambda _, y: [y[1], -area / mass * stress(y[0] / height)], (0, 1), [0, speed], events=rests, rtol=1e-9, atol=1e-12
+        lambda _, y: [y[1], -area / mass * stress(y[0] / height)],
+        (0, 1),
+        [0, speed],
+        events=rests,
+        rtol=1e-9,
+        atol=1e-12,
     )
     table = {"law": "elastic", "E": young, "nu": nu, "yield_strength": strength, "hardening_modulus": hardening}
     block = {"shape": "prism", "area": area, "height": height, "sides": sides, "mass": mass, "velocity": speed}
