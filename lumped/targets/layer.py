@@ -104,10 +104,12 @@ class Layer(Target):
     def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> LeftOut:
         """What of the layer moves with the striker adds m_a to its mass m: the peak force falls by m_a/m.
 
-        A thick one is a half-space: the smaller of the two.
+        A thick one is a half-space: the smaller of the two, or where no echo is back before the peak.
         """
         radiated = super().inertia_left_out(shape, material, pulse)
         if material.density is None:
+            return radiated
+        if not _echoed(material, pulse.duration, self.thickness):
             return radiated
         plate, a = math.sqrt(material.contact_modulus().spring / material.density), pulse.radius
         way = 0.25 * plate * pulse.duration / self.thickness  # half as far as its waves go until the peak
@@ -120,6 +122,15 @@ class Layer(Target):
 
 
 MEMBER = Part(Layer)
+
+
+def _echoed(material: Material, duration: float, thickness: float) -> bool:
+    """Whether the fastest waves have gone through a layer, m, and back by half of a pulse, s."""
+    if math.isinf(material.bulk) or not material.young.spring or material.density is None:
+        return True
+    confined = material.confined_modulus()
+    modulus = float(confined(0.5 * duration)) if confined.relaxed and duration > 0.0 else confined.spring
+    return 0.5 * duration * math.sqrt(modulus / material.density) > 2.0 * thickness
 
 
 def moving_share(nu: float, base: str, breadth: float, way: float, plane: bool) -> float:

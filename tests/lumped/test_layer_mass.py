@@ -59,3 +59,17 @@ def test_scales_are_found_though_long_steps_would_go_through_the_layer() -> None
         scene = Scene.from_dict({"striker": striker, "target": table | {"thickness": thickness}})
         exact = laws.get("ting").of(scene).simulate(scene, 1e-4).quantities["peak_depth"].value
         assert laws.correspondence.estimate(scene).peak_depth == pytest.approx(exact, rel=1e-2)
+
+
+def test_before_an_echo_is_back_a_layer_is_a_half_space() -> None:
+    """Nu = 0: density 1000, modulus 1e6, so that 0.1 s of a pulse's half go through 1.58 m and back."""
+    material = {"law": "elastic", "E": 1e6, "nu": 0.0, "density": 1000.0}
+    striker = {"shape": "cylinder", "radius": 1.0, "length": 1.0, "mass": 1e4, "velocity": 0.1}
+    told = []
+    for thickness in (1.5, 1.65, 3.0):
+        target = {"shape": "layer", "thickness": thickness, "base": "bonded", "material": material}
+        scene = Scene.from_dict({"striker": striker, "target": target})
+        told.append(model_ledger(scene, Peak(1e4, 0.02, 0.02, 0.2))[0])
+    assert "moves with it" in told[0].note
+    assert told[1].estimate == told[2].estimate
+    assert "radiates" in told[1].note
