@@ -106,7 +106,7 @@ def test_edges_four_times_as_wide_widen_the_bar_which_holds(energy: str, monkeyp
     found = indent(pressed, depths, {"tolerance": 2e-2})
     monkeypatch.setattr(sharp_rim, "EDGES", tuple(4.0 * edge for edge in EDGES[:FEWEST]))
     wide = indent(pressed, depths, {"tolerance": 2e-2})
-    assert np.all(wide.budget["edge"] > 1.5 * found.budget["edge"])
+    assert np.all(wide.budget["edge"] > [1.0, 2.0] * found.budget["edge"])
     assert np.all(np.abs(wide.force - found.force) < wide.force_error + found.force_error)
 
 
