@@ -39,11 +39,10 @@ def _lengths(scene: Scene | Indenter) -> str:
 
 
 class ContactNotSettled(NotReached):
-    """A contact problem did not converge, or its edge left the mesh at every scale."""
+    """A contact problem did not converge, or its edge left the mesh at every scale; ``enforced``: what helps it."""
 
-    def __init__(self, time: float) -> None:
-        cure = "cure: raise numerics.steps, lower numerics.penalty, or another numerics.enforcement: corrected, exact"
-        super().__init__(f"contact not found at t = {time:.6g} s; {cure}")
+    def __init__(self, time: float, enforced: str = "a lower numerics.penalty") -> None:
+        super().__init__(f"contact not found at t = {time:.6g} s; cure: a higher numerics.steps, or {enforced}")
 
 
 class FlowNotSettled(NotReached):

@@ -172,7 +172,7 @@ class ScaledStill(OnMesh):
                 force = operator.force(scale, solution.pressure)
                 return Pressed(force, fixed or scale * edge, attempt * solves, iterations)
             scale *= min(max(edge, 0.3), operator.points[-1])
-        raise IndentationNotSettled(depth, settling(self.numerics))
+        raise IndentationNotSettled(depth, ENFORCEMENTS.get(self.numerics.enforcement).settling)
 
 
 @dataclass(frozen=True)
@@ -198,7 +198,7 @@ class FixedStill(OnMesh):
         overlap = self.indenter.target.overlap(self.indenter.profile, self.stretch * operator.points, depth)
         solution, solves = self._solved(overlap, guess / self.reference)
         if not solution.converged:
-            raise IndentationNotSettled(depth, settling(self.numerics))
+            raise IndentationNotSettled(depth, ENFORCEMENTS.get(self.numerics.enforcement).settling)
         edge = solution.edge(operator.points)
         if fixed is None and not np.isfinite(edge):
             raise ContactTooWide(depth)
@@ -259,7 +259,7 @@ class BodyStill:
         gap, height = -solution.signed_pressure, target.lead * depth - overlap
         radius = fixed or half_width(self.places, solution.signed_pressure, gap, height=height)
         if not solution.converged or radius == 0.0:
-            raise IndentationNotSettled(depth, settling(self.numerics))
+            raise IndentationNotSettled(depth, ENFORCEMENTS.get(self.numerics.enforcement).settling)
         if not np.isfinite(radius):
             raise ContactTooWide(depth)
         force = self.operator.force(self.scale, solution.pressure)
@@ -275,14 +275,6 @@ def _enforced(
     free = in_reach(overlap) if operator.watched is None else np.maximum(overlap, -BEYOND * scale)  # a datum comes up
     problem = ContactProblem(surface.pressed, free, numerics.penalty, operator.yielding)
     return enforcement.enforce(problem, touching), enforcement.solves
-
-
-def settling(numerics: Numerics) -> str:
-    """What helps a contact to settle: softer springs, but stiffer ones where updates add up to what they lack."""
-    enforcement = ENFORCEMENTS.get(numerics.enforcement)
-    if enforcement.nodewise:
-        return "another numerics.enforcement"
-    return f"a {'lower' if enforcement.soft else 'higher'} numerics.penalty"
 
 
 def rim_order(numerics: Numerics) -> float:

@@ -24,6 +24,7 @@ WIDER = 1.5  # the mesh again where the contact outgrew it
 DOMINANT = 0.5  # causes above this share of the largest one, or of the tolerance, are refined together
 FACTOR = {"mesh": 1.5, "penalty": 4, "time_step": 2, "far_field": 2}  # by which they are
 AIM = 0.9  # of the tolerance: predictions err too
+CURE = "; cure: "  # what stands between a reason and its cure
 
 Found = TypeVar("Found")
 
@@ -59,7 +60,8 @@ class ImpactWay(Way[Found], Protocol):
 def refine(way: Way[Found], numerics: Numerics) -> tuple[Found, str]:
     """The last answer that was found, and why no finer settings were tried that may have met the tolerance.
 
-    Raises NotReached where there is none. Where finer settings lose their way, what is known stands, with its bars.
+    Raises NotReached where there is none. Where finer settings lose their way, what is known stands, with its bars, and
+    what they met is why.
     """
     found, outgrown, refused = None, None, ""
     for _ in range(way.rounds + 1):
@@ -69,9 +71,10 @@ def refine(way: Way[Found], numerics: Numerics) -> tuple[Found, str]:
             outgrown = failure
             numerics = numerics.varied(contact_radius=WIDER * numerics.contact_radius)
             continue
-        except NotReached:
+        except NotReached as failure:
             if found is None:
                 raise
+            refused = f"with finer settings {str(failure).partition(CURE)[0]}"  # its cure is for settings of one's own
             break
         finer, refused = way.finer(found)
         if finer is None or refused:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
 
 import numpy as np
 
-from fe_contact.budget.budget import CAUSES, Budget, Solution
+from fe_contact.budget.budget import CAUSES, Budget, Solution, shares_of
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import ImpactWay, refine
 from fe_contact.budget.several import Row, Several
@@ -22,10 +22,18 @@ from lumped.progress import counting_steps
 from lumped.result.result import UNITS, IndentationLeft, Result, largest_bar, provenance, unmet
 from lumped.scene.scene import Scene
 
-CURE = "cure: a larger tolerance"
-# As where a dashpot alone is watched long after the peak.
-NONE_MET = "no tolerance that is accepted is met; cure: a shorter motion.end_time where the contact does not end"
-OWN = ", or fewer numerics of your own"  # where there are some
+LOOSER = "a larger tolerance"
+NONE_MET = "no tolerance that is accepted is met"
+SOONER = "a shorter motion.end_time"  # as where a dashpot alone is watched long after the peak
+NO_CURE = "no setting is known to help"
+HIGHER, NONE_GIVEN = "a higher numerics.{}", "no numerics.{} of your own"
+# What takes from a cause where a user holds the setting, which else is refined, or chosen well.
+HELD = {
+    "mesh": {"elements_per_contact": HIGHER, "order": HIGHER},
+    "penalty": {"penalty": HIGHER, "enforcement": NONE_GIVEN},
+    "time_step": {"steps": HIGHER, "scheme": NONE_GIVEN},
+    "far_field": {"far_radius": HIGHER},
+}
 
 Answer = TypeVar("Answer", bound=Solution, covariant=True)
 AnyAnswer = TypeVar("AnyAnswer", bound=Solution)
@@ -142,10 +150,23 @@ def _missed(scene: Scene, solved: SolvedBy[Solution], found: Solution) -> list[s
         return []
     largest = max(largest_bar(part) for part in found.parts)
     met = 10.0 ** (math.ceil(10.0 * math.log10(largest)) / 10.0) if math.isfinite(largest) else None  # rounded up
-    if met is not None and met > RANGES["tolerance"][1]:
-        said = [*missed, solved.refused, NONE_MET]
-    else:
-        said = [*missed, solved.refused, "" if met is None else f"a tolerance of {met:.2g} is met", CURE]
-    if solved.plan.pinned:
-        said[-1] += OWN
-    return [part for part in said if part]
+    none = met is not None and met > RANGES["tolerance"][1]
+    reached = "" if met is None else NONE_MET if none else f"a tolerance of {met:.2g} is met"
+    cause = max(CAUSES, key=lambda one: float(shares_of(found, one).max()))
+    said = [*missed, f"the largest cause is the {cause.replace('_', ' ')}", solved.refused, reached]
+    cures = _cures(found, cause, solved.plan.pinned, none)
+    return [*filter(None, said), f"cure: {', or '.join(cures)}" if cures else NO_CURE]
+
+
+def _cures(found: Solution, cause: str, pinned: Container[str], none_met: bool) -> list[str]:
+    """What brings the bars within the tolerance, or takes from the largest cause of what they miss.
+
+    A larger tolerance is met, or asks for other settings, unless it was the largest, or one's own stand against it.
+    """
+    own = [how.format(key) for key, how in HELD[cause].items() if key in pinned]
+    if not none_met:
+        return [LOOSER, *own]
+    if not found.separated:
+        return [*own, SOONER]
+    looser = not own and found.numerics.tolerance < RANGES["tolerance"][1]
+    return own or ([LOOSER] if looser else [])

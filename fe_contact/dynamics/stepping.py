@@ -67,7 +67,7 @@ class Enforced:
         problem = ContactProblem(surface, overlap, self.penalty)
         solution = self.member.enforce(problem, touching)
         if not solution.converged:
-            raise ContactNotSettled(time)
+            raise ContactNotSettled(time, self.member.settling)
         return Found(solution.signed_pressure, solution.iterations)
 
 

@@ -157,7 +157,7 @@ class Stepper(OfSurface):
             solution = self.enforcement.enforce(problem, *guesses)
             iterations += solution.iterations
             if not solution.converged:
-                raise ContactNotSettled(state.time)
+                raise ContactNotSettled(state.time, self.enforcement.settling)
             edge = solution.edge(points)
             if abs(edge - 1) <= EDGE_WINDOW * 1.5 ** max(attempt - PATIENCE, 0):
                 return scale, edge, solution, Work(1, (attempt + 1) * self.enforcement.solves, iterations)
@@ -165,7 +165,7 @@ class Stepper(OfSurface):
             if scale < VANISHING * (steps[-1].radius if steps else self.numerics.contact_radius * VANISHING):
                 raise ContactLost(state.time)
             guesses = self._centred(solution)
-        raise ContactNotSettled(state.time)
+        raise ContactNotSettled(state.time, self.enforcement.settling)
 
     def _guesses(self, steps: Sequence[Step]) -> tuple[Touching, ...]:
         """Points that may touch in the coming step."""

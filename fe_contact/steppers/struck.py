@@ -312,7 +312,7 @@ class FixedContact:
             guesses = solution.sets
             slope = (excess - known[1]) / (depth - known[0])
             known, depth = (depth, excess), depth - excess / slope
-        raise ContactNotSettled(time)
+        raise ContactNotSettled(time, self.enforcement.settling)
 
     def _guesses(self, offer: Offer, inertia: Inertia, steps: Sequence[Step]) -> Guesses:
         """Points that may touch in the coming step: those of the last one, and what its contact gains or loses."""
@@ -342,7 +342,7 @@ class FixedContact:
         problem = ContactProblem(offer.surface, overlap, self.numerics.penalty / radius, yielding)
         solution: ContactSolution = self.enforcement.enforce(problem, *guesses)
         if not solution.converged:
-            raise ContactNotSettled(time)
+            raise ContactNotSettled(time, self.enforcement.settling)
         edge = solution.edge(self.places)
         if edge == 0.0:
             raise ContactLost(time)

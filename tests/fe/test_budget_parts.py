@@ -331,27 +331,65 @@ def limits(refused: str = "", pinned: tuple[str, ...] = ()) -> Any:
     return SimpleNamespace(refused=refused, plan=SimpleNamespace(pinned=pinned))
 
 
+def unreached(*parts: dict[str, Quantity], tolerance: float = 1e-3, cause: str = "mesh", separated: bool = True) -> Any:
+    """A contact, or several, of which one cause alone errs; the first one's quantities are those of all."""
+    return SimpleNamespace(
+        numerics=SimpleNamespace(tolerance=tolerance),
+        parts=parts,
+        quantities=parts[0],
+        separated=separated,
+        error=lambda name, by: parts[0][name].error if by == cause else 0.0,
+    )
+
+
+def lasting(error: float) -> dict[str, Quantity]:
+    """Quantities of which the duration's bar is so wide."""
+    return {name: Quantity(1.0, error if name == "duration" else 1e-4, "") for name in UNITS}
+
+
 def test_what_one_contact_misses_is_said_without_its_number() -> None:
-    quantity = {name: Quantity(1.0, 1e-2 if name == "duration" else 1e-4, "") for name in UNITS}
-    found: Any = SimpleNamespace(numerics=SimpleNamespace(tolerance=1e-3), parts=(quantity,))
     for impacts, said in ((1, "tolerance"), (2, "contact 1: tolerance")):
         scene: Any = SimpleNamespace(motion=SimpleNamespace(impacts=impacts))
-        first, *_ = solved._missed(scene, limits(), found)
+        first, *_ = solved._missed(scene, limits(), unreached(lasting(1e-2)))
         assert first == f"{said} 0.001 not reached: duration to 0.01"
 
 
 @pytest.mark.parametrize(("error", "met"), [(1.1e-2, "0.013"), (2.3, ""), (np.inf, "")])
 def test_the_tolerance_that_is_met_is_said_where_it_is_known(error: float, met: str) -> None:
     """Rounded up to a tenth of a decade."""
-    quantity = {name: Quantity(1.0, error if name == "duration" else 1e-4, "") for name in UNITS}
-    found: Any = SimpleNamespace(numerics=SimpleNamespace(tolerance=1e-3), parts=(quantity,))
     scene: Any = SimpleNamespace(motion=SimpleNamespace(impacts=1))
-    said = "; ".join(solved._missed(scene, limits(), found))
+    said = "; ".join(solved._missed(scene, limits(), unreached(lasting(error))))
     assert ("a tolerance of " in said) == bool(met)
     assert ("no tolerance that is accepted is met" in said) == (error == 2.3)
     assert not met or f"a tolerance of {met} is met" in said
-    assert "numerics of your own" not in said
-    assert solved._missed(scene, limits(pinned=("steps",)), found)[-1].endswith(", or fewer numerics of your own")
+
+
+@pytest.mark.parametrize("separated", [True, False])
+@pytest.mark.parametrize(
+    ("cause", "key"),
+    [("mesh", "order"), ("mesh", "elements_per_contact"), ("time_step", "steps"), ("penalty", "penalty")],
+)
+def test_the_cure_is_that_of_the_largest_cause(cause: str, key: str, separated: bool) -> None:
+    """A setting of one's own is named where it holds that cause; an earlier end where the contact has none."""
+    scene: Any = SimpleNamespace(motion=SimpleNamespace(impacts=1))
+    wide, near = (unreached(lasting(error), cause=cause, separated=separated) for error in (2.3, 1e-2))
+    everything = ("order", "elements_per_contact", "steps", "penalty")
+    of_others = tuple(set(everything) - set(solved.HELD[cause]))
+    for found in (wide, near):
+        assert f"the largest cause is the {cause.replace('_', ' ')}" in solved._missed(scene, limits(), found)
+        last = solved._missed(scene, limits(pinned=(key,)), found)[-1]
+        assert f"a higher numerics.{key}" in last
+        assert "numerics" not in solved._missed(scene, limits(pinned=of_others), found)[-1]
+        assert ("motion.end_time" in last) == (found is wide and not separated)
+    assert "a larger tolerance" not in solved._missed(scene, limits(pinned=(key,)), wide)[-1]
+    assert "a larger tolerance" in solved._missed(scene, limits(pinned=(key,)), near)[-1]
+
+
+def test_where_no_key_helps_no_cure_is_named() -> None:
+    scene: Any = SimpleNamespace(motion=SimpleNamespace(impacts=1))
+    last = solved._missed(scene, limits(), unreached(lasting(2.3), tolerance=0.1))[-1]
+    assert "cure" not in last
+    assert "no setting is known to help" in last
 
 
 @pytest.mark.parametrize("worst", [0, 1])
@@ -361,7 +399,7 @@ def test_of_several_contacts_the_tolerance_is_met_that_all_of_them_meet(worst: i
         {name: Quantity(1.0, {"duration": error}.get(name, 1e-4), "") for name in UNITS}
         for error in (*np.roll([3.9e-2, 1.1e-2], worst).tolist(), 5e-4)
     ]
-    found: Any = SimpleNamespace(numerics=SimpleNamespace(tolerance=1e-3), parts=tuple(parts))
+    found = unreached(*parts)
     scene: Any = SimpleNamespace(motion=SimpleNamespace(impacts=3))
     said = "; ".join(solved._missed(scene, limits("so dear"), found))
     assert "a tolerance of 0.04 is met" in said

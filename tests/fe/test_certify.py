@@ -21,7 +21,7 @@ from fe_contact.budget.refine import Finer, dominant, refine
 from fe_contact.budget.variation import Softening
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import solve
-from fe_contact.errors import MemoryTooSmall
+from fe_contact.errors import BodyTooFine, MemoryTooSmall
 from fe_contact.reference import result_of
 from fe_contact.settings import RANGES, Numerics
 from fe_contact.steppers.steps import Strike
@@ -271,6 +271,32 @@ def test_a_contact_that_outgrows_its_mesh_gets_a_wider_one_a_few_times(
         assert not refused
     with pytest.raises(MemoryTooSmall):
         refine(Outgrown(5.0 * numerics.contact_radius), numerics)
+
+
+@dataclass
+class Refused:
+    """A way whose finer settings cost too much."""
+
+    first: Numerics
+    rounds: int = 3
+
+    def certified(self, numerics: Numerics) -> Numerics:
+        if numerics != self.first:
+            raise BodyTooFine("a body of 9 unknowns", "accepted up to 8")
+        return numerics
+
+    def finer(self, found: Numerics) -> Finer:
+        return Finer(found.varied(steps=2 * found.steps))
+
+
+def test_what_finer_settings_met_is_told_without_its_cure(
+    hertz_strike: Callable[..., Strike], settings_of: Callable[..., Numerics]
+) -> None:
+    numerics = settings_of(hertz_strike())
+    assert refine(Refused(numerics), numerics) == (
+        numerics,
+        "with finer settings a body of 9 unknowns: accepted up to 8",
+    )
 
 
 def test_pinned_settings_are_kept_and_the_rest_is_refined(scene_of: Scenes) -> None:

@@ -546,3 +546,16 @@ def test_an_end_read_early_lies_within_its_spread_of_the_end_read_late(
 def test_without_waves_a_scene_that_asks_for_them_is_refused() -> None:
     with pytest.raises(BadInput, match=r"model\.inertia: true: this command is without waves"):
         solve(Scene.load("steel-ball-waves"), {})
+
+
+@pytest.mark.parametrize(
+    ("own", "freed"),
+    [({"order": 1, "elements_per_contact": 2.0}, ("order", "elements_per_contact")), ({"penalty": 1.0}, ("penalty",))],
+)
+def test_the_cure_that_is_named_helps(own: dict[str, Any], freed: tuple[str, ...]) -> None:
+    scene = lumped.Scene.load("polymer-washer")
+    found = simulate(scene, "fe", {"tolerance": 1e-2, **own})
+    assert not found.converged
+    cure = found.message.partition("cure: ")[2]
+    assert cure == ", or ".join(f"a higher numerics.{key}" for key in sorted(freed))
+    assert simulate(scene, "fe", {"tolerance": 1e-2}).converged

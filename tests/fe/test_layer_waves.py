@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
@@ -198,6 +199,20 @@ def test_the_band_holds_the_echoes_of_a_thin_layer(
     apart = np.abs(np.interp(inwards, found.history.time, found.history.force) - force[velocity > 0.0])
     assert (apart <= np.interp(inwards, found.history.time, found.history.force_error)).all()
     assert abs((found.quantities["peak_force"].value or 0.0) - force.max()) < found.quantities["peak_force"].error
+
+
+@pytest.mark.tenth
+def test_a_thin_layer_whose_echoes_are_not_resolved_says_what_limits_it() -> None:
+    """The contact ends, so that an earlier end is no cure; a larger tolerance is one."""
+    scene = broad_on_thin(6.0, 8.0)
+    heavy = {"striker.mass": 15.0 * scene.mass, "striker.coefficient": math.sqrt(15.0) * scene.profile.coefficient}
+    found = simulate(scene.changed(heavy), "fe", {"tolerance": 3e-2})
+    assert found.separated
+    assert found.converged or re.search(
+        "the largest cause is the time step; with finer settings .*: accepted up to .*; cure: a larger tolerance$",
+        found.message,
+    ), found.message
+    assert simulate(scene.changed(heavy), "fe", {"tolerance": 0.1}).converged
 
 
 @pytest.mark.tenth

@@ -32,5 +32,12 @@ class Enforcement:
     nodewise: bool = False
     law: Callable[[Array, float], Array] | None = None
 
+    @property
+    def settling(self) -> str:
+        """What helps a contact to settle: softer springs, but stiffer ones where updates add up to what they lack."""
+        if self.nodewise:
+            return "another numerics.enforcement"
+        return f"a {'lower' if self.soft else 'higher'} numerics.penalty"
+
 
 ENFORCEMENTS = Folder[Enforcement]("fe_contact.contact.enforcement", "numerics", "enforcement")
