@@ -143,8 +143,10 @@ def _judged(runs: Runs, read: Read, number: int, numerics: Numerics, alone: bool
         return steps.value, held | {"time_step": (*steps.changes, *steps.jitter)}
     cheap = numerics.varied(steps=steps.cheap)
     damped = DAMPED_ANYWHERE if steps.value.strike.relaxation.viscosity > 0.0 else {}
-    weights = NODEWISE_ANYWHERE if ENFORCEMENTS.get(numerics.enforcement).nodewise else damped
-    mesh, by_mesh = _by_mesh(curve, numerics, cheap, surface.follows_contact, weights)
+    nodewise = ENFORCEMENTS.get(numerics.enforcement).nodewise
+    weights = NODEWISE_ANYWHERE if nodewise else damped
+    beside_flat = nodewise and runs.flat
+    mesh, by_mesh = _by_mesh(curve, numerics, cheap, surface.follows_contact and not beside_flat, weights)
     pressed = _judging(numerics, cheap, "penalty")
     penalty, stiffer = other_setting(pressed, "penalty")
     swings = not steps.value.separated and steps.value.strike.gravity > 0.0  # between few steps, if it does so for long

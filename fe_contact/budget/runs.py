@@ -93,6 +93,12 @@ class Runs(AnyRuns[Numerics]):
             self._at_corners[number, settings] = calmest_at_corners(rippled, corners)
         return self._at_corners[number, settings]
 
+    @property
+    def flat(self) -> bool:
+        """Whether the striker has a flat end, beside whose rim contacts end, not at it."""
+        shape = self._geometry.shape
+        return shape.flat_radius > 0.0 and shape.fixed_radius is None
+
     def placed(self, settings: Numerics, few: int, fixed: bool = True) -> Numerics:
         """The settings for a contact as long, and as wide, as a march of ``few`` steps finds it; unless they are
         ``fixed``, with as many steps as the force takes that peaks as early as found there.

@@ -23,19 +23,21 @@ former edge: at an instant they get what the straight line missed.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 import numpy.typing as npt
+from scipy.optimize import brentq
 
 from fe_contact.assembly.cache import Recipe, cached_surface
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import ElasticBody, SurfaceOperator, operator_of
 from fe_contact.assembly.surface import monomials
 from fe_contact.bodies.memory import StepLaw, SurfaceBody, SurfaceMemory, area_weights, graded, interpolate
-from fe_contact.bodies.pressing import BEYOND, EDGE_WINDOW, RESCALINGS
+from fe_contact.bodies.pressing import BEYOND, EDGE_WINDOW, RESCALINGS, in_reach
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactProblem, ContactSolution, PressedSurface, Touching, count, moved
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
@@ -53,7 +55,7 @@ from fe_contact.steppers.steps import (
     coming_square,
     radius_time,
 )
-from fe_contact.steppers.struck import Deformable
+from fe_contact.steppers.struck import Deformable, Guesses
 from lumped.materials import Relaxation
 from lumped.numbers import gauss
 
@@ -66,6 +68,11 @@ COARSE = np.geomspace(1e-6, 1.0, 200)  # where, in units of the memory's reach, 
 CLOSING = 1.5  # power of the time left with which the gap closes before an edge
 EDGE = 1.0 - 1e-9  # of the unit mesh, safe from rounding
 SHARES, WEIGHTS = gauss(8)  # of a step, by Gauss's rule
+FARTHEST = (
+    1.0  # logarithm of a scale over the expected one, up to about which the one is looked for that ends at a node
+)
+SHARP = 1e-3  # work: of the distance of two nodes, within which the edge is brought to one
+ANYWHERE = 0.5  # the same window where nodes press one by one and none ends the contact: the mesh stays
 VANISHING = 1e-4  # contact that shrinks by this much within a step is lost
 
 
@@ -142,30 +149,78 @@ class Stepper(OfSurface):
         self, inertia: Inertia, steps: Sequence[Step], law: StepLaw, carried: Array
     ) -> tuple[float, float, ContactSolution, Work]:
         """Scale the mesh until the contact edge lies in its finest elements: scale, edge on the unit mesh, solution."""
-        points, limit, state = self.surface.operator.points, self.radii[-1], inertia.state
-        free_depth, give = inertia.free_depth, inertia.give
+        points, state = self.surface.operator.points, inertia.state
+        free_depth, spent = inertia.free_depth, Work(1)
         scale = self._expected_radius(state, steps, inertia.length) or self._overlap_radius(law, carried, free_depth)
-        guesses = self._guesses(steps)
-        iterations = 0
+        guesses, window = self._guesses(steps), EDGE_WINDOW
+        if self.enforcement.nodewise:
+            problem_of = partial(self._problem, inertia, law, carried)
+            found, spent = self._at_node(problem_of, state.time, scale, guesses)
+            if found is not None:
+                return (*found, spent)
+            scale, window = steps[-1].scale if steps else scale, ANYWHERE
         for attempt in range(RESCALINGS):
-            radii = scale * points
-            if radii[-1] > limit:
-                raise MemoryTooSmall(radii[-1])
-            height = np.minimum(self.strike.height(radii), BEYOND * radii[-1])  # a profile may end
-            overlap = law.now * (free_depth - height) + interpolate(carried, limit, radii)
-            problem = ContactProblem(self.surface.pressed, overlap, self.numerics.penalty, law.now * give * scale)
-            solution = self.enforcement.enforce(problem, *guesses)
-            iterations += solution.iterations
-            if not solution.converged:
-                raise ContactNotSettled(state.time, self.enforcement.settling)
+            problem = self._problem(inertia, law, carried, scale)
+            solution = self._solved(problem, guesses, state.time)
+            spent = spent.more(self.enforcement.solves, solution.iterations)
             edge = solution.edge(points)
-            if abs(edge - 1) <= EDGE_WINDOW * 1.5 ** max(attempt - PATIENCE, 0):
-                return scale, edge, solution, Work(1, (attempt + 1) * self.enforcement.solves, iterations)
+            if abs(edge - 1) <= window * 1.5 ** max(attempt - PATIENCE, 0):
+                return scale, edge, solution, spent
             scale *= min(max(edge, 0.3), points[-1])
             if scale < VANISHING * (steps[-1].radius if steps else self.numerics.contact_radius * VANISHING):
                 raise ContactLost(state.time)
             guesses = self._centred(solution)
         raise ContactNotSettled(state.time, self.enforcement.settling)
+
+    def _problem(self, inertia: Inertia, law: StepLaw, carried: Array, scale: float) -> ContactProblem:
+        """Contact on the mesh scaled by so much, m. Raises MemoryTooSmall."""
+        radii, limit = scale * self.surface.operator.points, self.radii[-1]
+        if radii[-1] > limit:
+            raise MemoryTooSmall(radii[-1])
+        height = np.minimum(self.strike.height(radii), BEYOND * radii[-1])  # a profile may end
+        overlap = law.now * (inertia.free_depth - height) + interpolate(carried, limit, radii)
+        yielding = law.now * inertia.give * scale
+        return ContactProblem(self.surface.pressed, in_reach(overlap), self.numerics.penalty, yielding)
+
+    def _solved(self, problem: ContactProblem, guesses: Guesses, time: float) -> ContactSolution:
+        """Raises ContactNotSettled."""
+        solution: ContactSolution = self.enforcement.enforce(problem, *guesses)
+        if not solution.converged:
+            raise ContactNotSettled(time, self.enforcement.settling)
+        return solution
+
+    def _at_node(
+        self, problem_of: Callable[[float], ContactProblem], time: float, expected: float, guesses: Guesses
+    ) -> tuple[tuple[float, float, ContactSolution] | None, Work]:
+        """Scale, edge and solution where the contact ends at the node at the edge, and the work; None where at no scale
+        near the ``expected`` one, m, as of a last touch in a ring.
+
+        Where nodes press one by one the force depends on where between two of them the contact ends, beside a flat end
+        by two per cent. With the end at a node it is as smooth in time as the motion.
+        """
+        known, surface = dict[float, tuple[ContactSolution, float]](), self.surface
+
+        def reaching(scale: float) -> float:
+            if scale not in known:
+                solution = self._solved(problem_of(scale), guesses, time)
+                known[scale] = solution, surface.from_edge(solution.signed_pressure)
+            return known[scale][1]
+
+        most = EDGE * float(self.radii[-1]) / float(surface.operator.points[-1])
+        expected = min(expected, most)
+        step, near, found = math.log1p(surface.spacing), expected, None
+        wider = reaching(near) > 0.0
+        while (reaching(near) > 0.0) is wider and step < FARTHEST:
+            if wider and near == most:
+                raise MemoryTooSmall(self.radii[-1])
+            step *= 2.0
+            near = min(expected * math.exp(step if wider else -step), most)
+        if (reaching(near) > 0.0) is not wider:
+            scale = float(brentq(reaching, expected, near, xtol=SHARP * surface.spacing * expected))
+            reaching(scale)
+            found = scale, 1.0, known[scale][0]
+        iterations = sum(solution.iterations for solution, _ in known.values())
+        return found, Work(1).more(len(known) * self.enforcement.solves, iterations)
 
     def _guesses(self, steps: Sequence[Step]) -> tuple[Touching, ...]:
         """Points that may touch in the coming step."""
@@ -248,6 +303,20 @@ class ScaledSurface(Deformable):
     def felt(self, snapshot: Snapshot) -> tuple[Array, Array]:
         """Where the mesh follows the contact, what the snapshot says: it has no roughness to be freed of."""
         return (snapshot.radii, snapshot.pressure) if self.follows_contact else super().felt(snapshot)
+
+    @cached_property
+    def spacing(self) -> float:
+        """Distance of the node at the edge from the next, on the unit mesh."""
+        return float(self.operator.nodes[self._edge + 1] - self.operator.nodes[self._edge])
+
+    def from_edge(self, signed_pressure: Array) -> float:
+        """The largest of a signed pressure (q,) on the unit mesh at the node at the edge and those beyond."""
+        return float(self.operator.projected(signed_pressure)[self._edge :].max())
+
+    @cached_property
+    def _edge(self) -> int:
+        """The node at the edge."""
+        return int(self.operator.nodes.searchsorted(EDGE))
 
     def response(self, pressure: Array) -> Array:
         """Displacement times modulus of all surface nodes, (n_s,), under a unit-mesh pressure (q,)."""

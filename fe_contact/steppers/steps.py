@@ -96,6 +96,10 @@ class Work(NamedTuple):
     contact_problems: int = 0
     iterations: int = 0
 
+    def more(self, problems: int, iterations: int) -> Work:
+        """With so many contact problems and Newton iterations more."""
+        return Work(self.steps, self.contact_problems + problems, self.iterations + iterations)
+
 
 @dataclass(frozen=True)
 class March:

@@ -24,7 +24,7 @@ from fe_contact.assembly.forms import Array
 from fe_contact.bodies.memory import StepLaw, SurfaceMemory, step_law
 from fe_contact.bodies.modes import Condensed
 from fe_contact.bodies.offer import Body, Memory, Offer
-from fe_contact.bodies.pressing import BEYOND, half_width
+from fe_contact.bodies.pressing import BEYOND, half_width, in_reach
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactProblem, ContactSolution, Touching
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
@@ -339,7 +339,8 @@ class FixedContact:
     ) -> ContactSolution:
         """One contact problem, the penalty in units of the modulus over the last contact's radius."""
         radius = steps[-1].radius / self.scale if steps and steps[-1].radius > 0.0 else WIDTH
-        problem = ContactProblem(offer.surface, overlap, self.numerics.penalty / radius, yielding)
+        free = overlap if self.surface.operator.watched is not None else in_reach(overlap)  # a datum comes up
+        problem = ContactProblem(offer.surface, free, self.numerics.penalty / radius, yielding)
         solution: ContactSolution = self.enforcement.enforce(problem, *guesses)
         if not solution.converged:
             raise ContactNotSettled(time, self.enforcement.settling)

@@ -559,3 +559,22 @@ def test_the_cure_that_is_named_helps(own: dict[str, Any], freed: tuple[str, ...
     cure = found.message.partition("cure: ")[2]
     assert cure == ", or ".join(f"a higher numerics.{key}" for key in sorted(freed))
     assert simulate(scene, "fe", {"tolerance": 1e-2}).converged
+
+
+@pytest.mark.tenth
+@pytest.mark.parametrize(
+    ("edge", "elastic"), [(1e-5, False), (3e-5, True), (3e-5, False), (1e-4, True), (1e-4, False), (3e-3, True)]
+)
+def test_nodes_that_press_one_by_one_tell_of_a_narrow_edge(
+    edge: float, elastic: bool, uncovered: Callable[..., dict[str, float]]
+) -> None:
+    """A flat end of 1 mm whose edge is rounded by a hundredth of that to thrice as much, by the exact law's history."""
+    material = {"target.material": {"law": "elastic", "E": 1.8e6, "nu": 0.3}} if elastic else {}
+    scene = lumped.Scene.load("polymer-rounded-punch", {"striker.edge_radius": edge, **material})
+    truth = lumped.laws.get("ting").of(scene).simulate(scene, 1e-6)
+    found = simulate(scene, "fe", {"tolerance": 1e-2, "enforcement": "exact"})
+    assert found.converged, found.message
+    assert not uncovered(found, truth, ("peak_force", "duration", "restitution", "peak_depth", "impulse"))
+    rows = found.history.time[:-1]
+    apart = np.abs(np.interp(rows, truth.history.time, truth.history.force) - found.history.force[:-1])
+    assert (apart <= found.history.force_error[:-1] + 1e-5 * truth.history.force.max()).all()

@@ -6,6 +6,7 @@ import itertools
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from types import ModuleType, SimpleNamespace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -250,11 +251,12 @@ class Settling:
             radii=np.array([0.0, 1e3]),
             strike=SimpleNamespace(height=lambda radii: 0.5 * radii**2),
             numerics=SimpleNamespace(penalty=1.0, contact_radius=scale),
-            enforcement=SimpleNamespace(enforce=enforce, solves=2),
+            enforcement=SimpleNamespace(enforce=enforce, solves=2, nodewise=False),
             _expected_radius=lambda *of: scale,
             _guesses=lambda steps: (),
             _centred=lambda solution: (),
         )
+        stepper._problem, stepper._solved = partial(Stepper._problem, stepper), partial(Stepper._solved, stepper)
         inertia: Any = SimpleNamespace(state=SimpleNamespace(time=0.0), free_depth=0.01, give=0.0, length=1.0)
         law: Any = SimpleNamespace(now=1.0)
         before: Any = [SimpleNamespace(radius=scale)] * steps
