@@ -96,12 +96,14 @@ def highest(curve: Callable[[Array], Array], places: Array) -> tuple[float, floa
     return float(0.5 * (low + high) + 0.5 * (high - low) * candidates[best]), float(heights[best])
 
 
-def rounded_by_time(times: Array, force: Array) -> Array:
+def rounded_by_time(times: Array, force: Array, rounded: Array | None = None) -> Array:
     """What rounding of times, ascending, (n,), shifts a force by between them, N, (n - 1,): a steep one late by much.
+
+    ``rounded`` (n - 1,), s: by how much, where it is more than that of a time.
 
     By no more than the force changes between two rows that rounding cannot tell apart.
     """
-    rounded = ROUNDED_TIME * times[1:]
+    rounded = ROUNDED_TIME * times[1:] if rounded is None else rounded
     steps = np.maximum(np.diff(times), rounded)
     share = np.divide(rounded, steps, out=np.zeros_like(steps), where=steps > 0.0)
     return np.asarray(np.abs(np.diff(force)) * share)

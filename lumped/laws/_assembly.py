@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from lumped.numbers import Array, Clock, rounded_by_time
+from lumped.numbers import ROUNDED_TIME, Array, Clock, rounded_by_time
 from lumped.result.history import AT_REST, End, History, densified
 from lumped.result.model_ledger import Ledger, Peak
 from lumped.result.result import RULED_RELATIVE, UNITS, Quantity, Result, provenance, unmet
@@ -23,6 +23,7 @@ if TYPE_CHECKING:  # the row of springs needs numpy alone
 
 # Rounding of the sums behind a quantity, relative to it.
 ROUNDING = 1e-12
+DIGITS = 4e-15  # rounding: of a depth after all the steps in which a force falls, relative to it
 LAST_DIGIT = 1e-15  # rounding: of a depth, and of what an impulse is the difference of, relative to it
 # A peak is flat: its time is known to the root of what its height is known to.
 ROUNDING_OF = {"peak_time": 1e-8}
@@ -57,7 +58,9 @@ class Answer:
     `columns` tells it at any time, `times` are its own rows; `values` are the quantities (None where undefined),
     without history_l2. `until`: the last time to follow, s; None: the scene's. `contacts`: the several contacts of one
     motion. `mass`: what moves, kg, by which the impulse goes with the velocity; 0 where waves carry some of it.
-    `stiff`: the largest stiffness times its depth, N; `momentum`: of what the impulse is the difference, N s.
+    `stiff`: the largest stiffness times its depth, N; `momentum`: of what the impulse is the difference, N s;
+    `rounded`: what the last digits of depths and rates change of a quantity, SI; `late`: the same of when each of
+    several contacts begins, s.
     """
 
     times: Array
@@ -71,6 +74,8 @@ class Answer:
     mass: float = 0.0
     stiff: float = 0.0
     momentum: float = 0.0
+    rounded: Mapping[str, float] = field(default_factory=dict)
+    late: tuple[float, ...] = ()
 
     @property
     def rounding(self) -> float:
@@ -134,16 +139,17 @@ def bars(fine: Answer, coarse: Answer, safety: float) -> tuple[dict[str, Quantit
     places = np.append(times, near.places)  # both are asked once for all of them
     force = fine.columns.force(places)
     missed = force - coarse.columns.force(places)
-    worst, l2 = _largest_and_norm(times, force[: times.size], missed[: times.size])
+    worst, l2 = _largest_and_norm(fine, times, force[: times.size], missed[: times.size])
     passed = _impulse_missed(fine, coarse, times)
-    steep, late = _rounded(times, force[: times.size])
-    quantities = {"history_l2": Quantity(0.0, safety * l2 + max(fine.rounding, late), "1")}
+    steep, late = _rounded(fine, times, force[: times.size])
+    rounded = max(fine.rounding, late, fine.rounded.get("history_l2", 0.0))
+    quantities = {"history_l2": Quantity(0.0, safety * l2 + rounded, "1")}
     for name, value in fine.values.items():
         other, error = coarse.values[name], None
         if value is not None:
             scale = 1.0 if name == "restitution" else abs(value)
             least = LEAST_SHARE * l2 + fine.rounding + ROUNDING_OF.get(name, 0.0)
-            error = max(abs(value - (other or 0.0)), least * scale)
+            error = max(abs(value - (other or 0.0)), least * scale, fine.rounded.get(name, 0.0))
             if name == "impulse":
                 error = max(error, passed, LAST_DIGIT * fine.momentum)
             if name == "peak_time":
@@ -152,7 +158,7 @@ def bars(fine: Answer, coarse: Answer, safety: float) -> tuple[dict[str, Quantit
         quantities[name] = Quantity(value, error, UNITS[name])
     peak = fine.values["peak_force"] or 0.0
     return {name: quantities[name] for name in UNITS}, safety * (
-        worst + max(fine.rounding * peak, steep, LAST_DIGIT * fine.stiff)
+        worst + max(fine.rounding * peak, steep, DIGITS * fine.stiff)
     )
 
 
@@ -176,19 +182,49 @@ def _impulse_missed(fine: Answer, coarse: Answer, times: Array) -> float:
     return fine.mass * float(np.abs(fine.columns(times)[1] - coarse.columns(times)[1]).max())
 
 
-def _largest_and_norm(times: Array, force: Array, missed: Array) -> tuple[float, float]:
+def _largest_and_norm(fine: Answer, times: Array, force: Array, missed: Array) -> tuple[float, float]:
     """Largest difference of two forces over time, N, and its L2 norm over that of the force."""
+    # by the trapezoidal rule, twice: of both norms
+    apart, norm = float(np.diff(times) @ (missed[1:] ** 2 + missed[:-1] ** 2)), _squared(fine, times, force)
+    return float(np.abs(missed).max()), math.sqrt(apart / norm) if norm else 0.0
+
+
+def _squared(fine: Answer, times: Array, force: Array) -> float:
+    """Twice the integral of the square of a force over the contacts, N2 s.
+
+    Where rows that rounding cannot tell apart are left out, and the force jumps at the end of a contact, a line from
+    there would lead through all the flight.
+    """
     steps = np.diff(times)
-    weights = np.append(steps, 0.0) + np.append(0.0, steps)  # of the trapezoidal rule, twice: of both norms
-    norm = float(weights @ force**2)
-    return float(np.abs(missed).max()), math.sqrt(float(weights @ missed**2) / norm) if norm else 0.0
+    if fine.contacts:
+        middle = times[:-1] + 0.5 * steps
+        starts = np.array([one["start"] for one in fine.contacts], dtype=float)
+        lasted = np.array([math.inf if one["duration"] is None else one["duration"] for one in fine.contacts])
+        number = np.maximum(np.searchsorted(starts, middle, side="right") - 1, 0)
+        steps = steps * (middle - starts[number] <= lasted[number])
+    return float(steps @ (force[1:] ** 2 + force[:-1] ** 2))
 
 
-def _rounded(times: Array, force: Array) -> tuple[float, float]:
-    """By how much rounding of these times shifts a force at most, N, and its L2 norm over that of the force."""
-    shifted, steps = rounded_by_time(times, force), np.diff(times)
-    norm = float(steps @ (force[1:] ** 2 + force[:-1] ** 2)) / 2.0
-    return float(shifted.max(initial=0.0)), math.sqrt(float(steps @ shifted**2) / norm) if norm else 0.0
+def _rounded(fine: Answer, times: Array, force: Array) -> tuple[float, float]:
+    """By how much rounding of these times shifts a force at most, N, and its L2 norm over that of the force.
+
+    What is rounded of a speed is carried through the flight that follows, however long that lasts. What changes within
+    rows that rounding cannot tell apart, as at a touch, may do so as much sooner or later as a whole.
+    """
+    rounded, steps, change = ROUNDED_TIME * times[1:], np.diff(times), np.abs(np.diff(force))
+    touched = np.zeros(steps.size, dtype=bool)  # between which rows a force may jump
+    if fine.late:
+        starts = np.array([one["start"] for one in fine.contacts], dtype=float)
+        rounded += np.array(fine.late)[np.searchsorted(starts, times[1:], side="right") - 1]
+        touched[np.clip(np.searchsorted(times, starts[1:], side="left") - 1, 0, None)] = True
+    shifted = rounded_by_time(times, force, rounded)
+    close = touched | (steps < rounded)
+    together = np.cumsum(~close)  # rows that rounding cannot tell apart have one number
+    at_once, width = np.bincount(together, change * close), np.zeros(int(together.max(initial=0)) + 1)
+    np.maximum.at(width, together, rounded * close)
+    late = float((steps * ~close) @ shifted**2) + float(width @ at_once**2)
+    norm = _squared(fine, times, force)
+    return float(shifted.max(initial=0.0)), math.sqrt(2.0 * late / norm) if norm else 0.0
 
 
 def wider(one: Mapping[str, Quantity], other: Mapping[str, Quantity]) -> dict[str, Quantity]:

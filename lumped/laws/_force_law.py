@@ -12,7 +12,7 @@ import numpy as np
 
 from lumped import laws
 from lumped.errors import BadInput, Fault
-from lumped.laws._assembly import Answer, assemble, bars, impulse_of, small_model, values_of_several
+from lumped.laws._assembly import DIGITS, LAST_DIGIT, Answer, assemble, bars, impulse_of, small_model, values_of_several
 from lumped.load_curves.base import LoadCurve
 from lumped.numbers import Array, Clock
 from lumped.result.history import End
@@ -20,7 +20,7 @@ from lumped.result.result import UNITS, Quantity, Result, meets
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
 from lumped.solvers.point.bodies import TINY, Bodies, PointLaw, State
-from lumped.solvers.point.contact import PointMotion, motion
+from lumped.solvers.point.contact import Contact, PointMotion, motion
 from lumped.solvers.point.half_widths import half_widths
 from lumped.solvers.point.phase import PointPhase
 from lumped.solvers.point.track import Outcome, PointTrack, outcome_of
@@ -192,19 +192,64 @@ def _answer(law: ForceLaw, scene: Scene, track: PointTrack, outcomes: Sequence[O
         until,
         tuple(outcome._asdict() for outcome in outcomes) if scene.motion.impacts > 1 else (),
         scene.reduced_mass,
-        0.0 if law.remembers else _stiffest(law, moved),
+        0.0 if law.remembers else max(_stiffest(law, one).largest for one in moved.contacts),
         scene.reduced_mass * (scene.velocity + abs(last.last.rate) + abs(scene.gravity) * last.end_time),
+        {} if law.remembers else _rounded(law, scene, moved),
+        _late(law, scene, moved) if scene.motion.impacts > 1 and not law.remembers else (),
     )
 
 
-def _stiffest(law: ForceLaw, moved: PointMotion) -> float:
-    """The largest stiffness times its depth, N: by so much a digit of the depth is more than one of the force."""
-    steps = [(phase.stage, step) for one in moved.contacts for phase in one.phases for step in phase.steps]
-    return max(
-        float(np.abs(law.tangents(pressed, step.rate, stage)[0] * pressed).max())
-        for stage, step in steps
-        if (pressed := np.maximum(step.depth, TINY)).size
-    )
+class Stiffest(NamedTuple):
+    """Of a contact the `largest` stiffness times its depth, N, by which a digit of the depth is more than one of the
+    force; its integral over time, N s, that of its square, N2 s, and that of the square of the force.
+    """
+
+    largest: float
+    passed: float
+    squared: float
+    squared_force: float
+
+
+def _stiffest(law: ForceLaw, one: Contact) -> Stiffest:
+    """That of a contact, from the nodes of its steps."""
+    found = [0.0, 0.0, 0.0, 0.0]
+    for stage, step in ((phase.stage, step) for phase in one.phases for step in phase.steps):
+        pressed = np.maximum(step.depth, TINY)
+        stiff = np.abs(law.tangents(pressed, step.rate, stage)[0] * pressed)
+        found[0] = max(found[0], float(stiff.max()))
+        means = (float(stiff.mean()), float((stiff**2).mean()), float((step.force**2).mean()))
+        found[1:] = [sum_ + step.length * mean for sum_, mean in zip(found[1:], means, strict=True)]
+    return Stiffest(*found)
+
+
+def _rounded(law: ForceLaw, scene: Scene, moved: PointMotion) -> dict[str, float]:
+    """What the last digit of the depth changes: of a force so steep that it falls within few digits a good share.
+
+    That sends the striker off at another speed, and the slower it leaves the later it is out.
+    """
+    first, all_of = _stiffest(law, moved.contacts[0]), [_stiffest(law, one) for one in moved.contacts]
+    force = math.sqrt(sum(one.squared_force for one in all_of))
+    speed = LAST_DIGIT * first.passed / scene.reduced_mass
+    leaving = abs(moved.contacts[0].last.rate)
+    return {
+        "history_l2": DIGITS * math.sqrt(sum(one.squared for one in all_of)) / force if force else 0.0,
+        "duration": moved.contacts[0].end_time * min(speed / leaving, 1.0) if leaving else 0.0,
+        "restitution": speed / scene.velocity,
+    }
+
+
+def _late(law: ForceLaw, scene: Scene, moved: PointMotion) -> tuple[float, ...]:
+    """By how much rounding of depths and rates lets each contact begin later or sooner, s.
+
+    A flight lasts twice the speed over gravity; and who leaves the more slowly, leaves the later.
+    """
+    late = [0.0]
+    for one in moved.contacts[:-1]:
+        speed = LAST_DIGIT * (abs(one.first.rate) + _stiffest(law, one).passed / scene.reduced_mass)
+        lasted, leaving = one.end_time - one.start_time, abs(one.last.rate)
+        flight = 2.0 * speed / scene.gravity if scene.gravity > 0.0 else 0.0
+        late.append(late[-1] + flight + (lasted * min(speed / leaving, 1.0) if leaving else 0.0))
+    return tuple(late)
 
 
 def _fewer(scene: Scene, contacts: int) -> str:

@@ -12,6 +12,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from lumped import Model, Motion, Result, Scene, laws
+from lumped.laws.impact_bilinear import ImpactBilinear
 from lumped.numbers import Array
 from lumped.scene.tables import LawChoice
 
@@ -160,3 +161,59 @@ def test_flights_however_long_leave_every_impact_its_restitution() -> None:
     speeds = np.array([one["velocity"] for one in found.contacts])
     assert found.contacts[-1]["start"] > 1e9 * (found.quantities["duration"].value or math.inf)
     assert speeds[1:] / speeds[:-1] == pytest.approx(found.quantities["restitution"].value, rel=1e-9)
+
+
+def loop_left(law: ImpactBilinear, mass: float, velocity: float) -> tuple[float, float]:
+    """Duration, s, and restitution of one impact on a loop that yields, in long numbers: four arcs of sines."""
+    k1, k2, yields, m, v = map(np.longdouble, (law.k1, law.k2, law.yield_depth, mass, velocity))
+    held, steep, soft = (k1 - k2) * yields, np.sqrt(k1 / m), np.sqrt(k2 / m)
+    after = np.sqrt((v - yields * steep) * (v + yields * steep))
+    deeper = m * after**2 / (k1 * yields + np.sqrt((k1 * yields) ** 2 + k2 * m * after**2))
+    force = k2 * (yields + deeper) + held
+    back = np.sqrt((2.0 * force - k1 * yields) * yields / m)
+    times = (
+        np.arcsin(yields * steep / v) / steep,
+        np.arctan2(after / soft, yields + held / k2) / soft,
+        np.arctan2(back / steep, force / k1 - yields) / steep,
+        np.arctan2(deeper * soft, back) / soft,
+    )
+    return float(sum(times)), float(np.hypot(back, soft * deeper) / v)
+
+
+@pytest.mark.parametrize("e", np.geomspace(1e-4, 4e-3, 6))
+def test_a_loop_that_gives_hardly_anything_back_is_known_to_its_own_digits(e: float) -> None:
+    """It unloads within a 1/e^2-th of its depth: a digit of the depth is many of the speed with which it is left."""
+    law = {"name": "impact_bilinear", "e": float(e), "k": 1e6, "alpha": 2.2}
+    motion = {"impacts": 2, "end_time": 1e3}
+    scene = Scene.from_dict({"striker": {"mass": 3.0, "velocity": 0.7}, "law": law, "motion": motion})
+    own = laws.get("impact_bilinear").of(scene)
+    assert isinstance(own, ImpactBilinear)
+    found, truth = own.simulate(scene, 1e-3).quantities, loop_left(own, 3.0, 0.7)
+    for name, true in zip(("duration", "restitution"), truth, strict=True):
+        assert abs((found[name].value or 0.0) - true) <= (found[name].error or 0.0), name
+    assert (found["duration"].error or 1.0) < 1e-6 * truth[0]
+
+
+@pytest.mark.parametrize("gravity", [1e-2, 1e-3, 1e-4])
+def test_a_jump_at_a_touch_after_a_long_flight_may_come_as_late_as_that_is_rounded(gravity: float) -> None:
+    """Of a dashpot beside a spring; its swing about the depth at rest, and the flight, in long numbers."""
+    w, share = np.longdouble(1e3), np.longdouble(0.1)
+    rest, damped, turning = gravity / w**2, share * w, w * np.sqrt(1.0 - share**2)
+    slope = (1.0 - damped * rest) / turning  # depth = rest + exp(-damped t) (slope sin - rest cos)
+
+    def swing(time: np.longdouble) -> tuple[np.longdouble, np.longdouble]:
+        sine, cosine, faded = np.sin(turning * time), np.cos(turning * time), np.exp(-damped * time)
+        depth = rest + faded * (slope * sine - rest * cosine)
+        rate = -damped * (depth - rest) + faded * turning * (slope * cosine + rest * sine)
+        return depth, rate
+
+    end = np.longdouble(np.pi) / turning
+    for _ in range(6):  # Newton
+        end -= swing(end)[0] / swing(end)[1]
+    leaving = -swing(end)[1]
+    touch = end + 2.0 * leaving / gravity
+    found = result("kelvin", 1e-3, k=1e6, xi=0.1, exit="depth", gravity=gravity, impacts=2)
+    late = abs(float(found.contacts[1]["start"] - touch))
+    jump = 2.0 * float(damped * leaving)
+    norm = math.sqrt(np.trapezoid(found.history.force**2, found.history.time))
+    assert math.sqrt(late) * jump / norm <= found.quantities["history_l2"].error

@@ -612,7 +612,8 @@ def test_how_a_force_bends_is_told_whatever_its_slope_there(rate: float) -> None
 def test_two_forces_that_are_none_differ_by_nothing() -> None:
     """Of a striker that its end time stops before anything presses."""
     nothing = np.zeros(4)
-    assert _largest_and_norm(np.arange(4.0), nothing, nothing) == (0.0, 0.0)
+    alone: Any = SimpleNamespace(contacts=())
+    assert _largest_and_norm(alone, np.arange(4.0), nothing, nothing) == (0.0, 0.0)
 
 
 @pytest.mark.parametrize("impacts", [1, 2])
