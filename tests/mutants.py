@@ -336,7 +336,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/budget/curve.py", "INSIDE", ""): "how many places are put into an interval",
     ("fe_contact/steppers/scaled_surface.py", "_missed", "EDGE * wide"): "a guard against dividing by zero itself",
     ("fe_contact/steppers/scaled_surface.py", "_missed", "BEYOND * stepper"): "a height where nothing ever touches",
-    ("fe_contact/steppers/scaled_surface.py", "Stepper._settle", "BEYOND *"): "a height where nothing ever touches",
+    ("fe_contact/steppers/scaled_surface.py", "Stepper._problem", "BEYOND *"): "a height where nothing ever touches",
     ("fe_contact/steppers/steps.py", "Strike.total", ""): "a default that strikes of scenes do not use",
     ("fe_contact/waves/certify.py", "WaveRuns.__init__", "1 -> 0"): "fewer than any body has",
     ("fe_contact/waves/targets/rod.py", "moving", "0.0 -> 0.1"): "of a density that there is not: every rod has one",

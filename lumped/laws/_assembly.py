@@ -60,7 +60,7 @@ class Answer:
     motion. `mass`: what moves, kg, by which the impulse goes with the velocity; 0 where waves carry some of it.
     `stiff`: the largest stiffness times its depth, N; `momentum`: of what the impulse is the difference, N s;
     `rounded`: what the last digits of depths and rates change of a quantity, SI; `late`: the same of when each of
-    several contacts begins, s.
+    several contacts begins, s, and the force with which it does, N.
     """
 
     times: Array
@@ -75,7 +75,7 @@ class Answer:
     stiff: float = 0.0
     momentum: float = 0.0
     rounded: Mapping[str, float] = field(default_factory=dict)
-    late: tuple[float, ...] = ()
+    late: tuple[tuple[float, float], ...] = ()
 
     @property
     def rounding(self) -> float:
@@ -212,19 +212,20 @@ def _rounded(fine: Answer, times: Array, force: Array) -> tuple[float, float]:
     rows that rounding cannot tell apart, as at a touch, may do so as much sooner or later as a whole.
     """
     rounded, steps, change = ROUNDED_TIME * times[1:], np.diff(times), np.abs(np.diff(force))
-    touched = np.zeros(steps.size, dtype=bool)  # between which rows a force may jump
+    jumped = 0.0
     if fine.late:
         starts = np.array([one["start"] for one in fine.contacts], dtype=float)
-        rounded += np.array(fine.late)[np.searchsorted(starts, times[1:], side="right") - 1]
-        touched[np.clip(np.searchsorted(times, starts[1:], side="left") - 1, 0, None)] = True
+        late, jumps = np.array(fine.late).T
+        rounded += late[np.searchsorted(starts, times[1:], side="right") - 1]
+        jumped = float((ROUNDED_TIME * starts + late) @ jumps**2)
     shifted = rounded_by_time(times, force, rounded)
-    close = touched | (steps < rounded)
+    close = steps < rounded
     together = np.cumsum(~close)  # rows that rounding cannot tell apart have one number
     at_once, width = np.bincount(together, change * close), np.zeros(int(together.max(initial=0)) + 1)
     np.maximum.at(width, together, rounded * close)
-    late = float((steps * ~close) @ shifted**2) + float(width @ at_once**2)
+    moved = jumped + float((steps * ~close) @ shifted**2) + float(width @ at_once**2)
     norm = _squared(fine, times, force)
-    return float(shifted.max(initial=0.0)), math.sqrt(2.0 * late / norm) if norm else 0.0
+    return float(shifted.max(initial=0.0)), math.sqrt(2.0 * moved / norm) if norm else 0.0
 
 
 def wider(one: Mapping[str, Quantity], other: Mapping[str, Quantity]) -> dict[str, Quantity]:

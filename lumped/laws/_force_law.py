@@ -238,8 +238,8 @@ def _rounded(law: ForceLaw, scene: Scene, moved: PointMotion) -> dict[str, float
     }
 
 
-def _late(law: ForceLaw, scene: Scene, moved: PointMotion) -> tuple[float, ...]:
-    """By how much rounding of depths and rates lets each contact begin later or sooner, s.
+def _late(law: ForceLaw, scene: Scene, moved: PointMotion) -> tuple[tuple[float, float], ...]:
+    """By how much rounding of depths and rates lets each contact begin later or sooner, s, and its first force, N.
 
     A flight lasts twice the speed over gravity; and who leaves the more slowly, leaves the later.
     """
@@ -249,7 +249,10 @@ def _late(law: ForceLaw, scene: Scene, moved: PointMotion) -> tuple[float, ...]:
         lasted, leaving = one.end_time - one.start_time, abs(one.last.rate)
         flight = 2.0 * speed / scene.gravity if scene.gravity > 0.0 else 0.0
         late.append(late[-1] + flight + (lasted * min(speed / leaving, 1.0) if leaving else 0.0))
-    return tuple(late)
+    jumps = [
+        float(law.force(max(one.first.depth, TINY), one.first.rate, one.phases[0].stage)) for one in moved.contacts
+    ]
+    return tuple(zip(late, jumps, strict=True))
 
 
 def _fewer(scene: Scene, contacts: int) -> str:
