@@ -175,7 +175,16 @@ class Budget(Solution):
         energy = self.curve.energy
         lost = sum(abs(energy[one]) for one in LOST)
         own = 0.0 if name in OUTSIDE or energy[name] == 0.0 else lost
-        return own + sum(np.inf if one is None else one.energies[name] for row in self.changes.values() for one in row)
+        error = own + sum(np.inf if one is None else one.energies[name] for row in self.changes.values() for one in row)
+        return max(error, self._work_of_weight) if name == "in" else error
+
+    @property
+    def _work_of_weight(self) -> float:
+        """What the weight does, J, in the time by which the end may come earlier or later."""
+        strike, curve = self.curve.strike, self.curve
+        if not curve.separated or strike.gravity == 0.0:
+            return 0.0
+        return strike.mass * strike.gravity * abs(curve.leaving_speed) * self.total("duration")
 
     def history(self) -> History:
         """Rows dense enough for linear interpolation, with the force's error band."""

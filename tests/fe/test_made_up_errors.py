@@ -987,6 +987,19 @@ def test_energy_that_is_lost_may_belong_to_any_term_that_there_is() -> None:
     assert bars == pytest.approx(dict.fromkeys(("viscous", "contact", "numerical"), 0.25)), "what is left over has none"
 
 
+@pytest.mark.parametrize("gravity", [0.0, 5.0])
+@pytest.mark.parametrize("separated", [True, False])
+def test_what_a_weight_has_done_by_the_end_is_known_as_well_as_the_end(gravity: float, separated: bool) -> None:
+    """Settings that part early and late, at one speed, and agree on all work but by chance."""
+    nothing: Any = None
+    strike = replace(STRIKE, gravity=gravity)
+    first, late = (replace(TRUTH, strike=strike, separated=separated, duration=end) for end in (1.0, 1.02))
+    moved = Variation(first, late, 1.0)
+    found = Budget(first, nothing, {**dict.fromkeys(CAUSES, ()), "mesh": (moved,)}, nothing, nothing)
+    lifted = strike.mass * gravity * abs(first.leaving_speed) * 0.02
+    assert (found.energy_error("in") >= lifted) if separated else (found.energy_error("in") == 0.0)
+
+
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-4, 1e-6])
 def test_lines_between_the_rows_of_a_history_err_by_little_of_the_tolerance(
     settings: Numerics, tolerance: float
