@@ -10,7 +10,8 @@ length of step leaves another share of itself of that, in which no order shows: 
 less than twice their distance. Where a ball rings both may miss the same share of a step, about half of the finer one.
 
 What a ball's far pole sends back meets at the contact all at once, in a pulse of the force so short that two settings
-may miss it alike: of its band, that two of them agree there says less.
+may miss it alike: of its band, that two of them agree there says less. Of a pulse near the end they may agree on the
+end by chance alone, not on all of the fall to it.
 
 A march with waves as a curve: through fewer rows than steps, between which the contact's chatter averages out.
 
@@ -64,6 +65,7 @@ TRUSTED = 2  # of that
 FRONTS = (2.0 ** ORDER["time_step"] - 1.0) / (math.sqrt(2.0) - 1.0)
 DEGREE, REACH = 3, 2  # of the polynomial through all steps so many rows to either side
 MISSED = 0.5 * SAFETY  # of a step, by which a ball that rings leaves sooner or later than both lengths of step say
+FALLING = (0.02, 0.03, 0.05, 0.07, 0.1)  # of the largest force: below, points that part one by one tell how it falls
 ROUNDS = 3  # refinements before giving up
 GROWTH = {
     "mesh": Growth(ORDER["mesh"], step=2**0.25, most=2.0, work=2.0),
@@ -161,8 +163,9 @@ def certify(runs: WaveRuns, numerics: WaveNumerics) -> Several:
 def _judged(runs: WaveRuns, number: int, numerics: WaveNumerics) -> Judged:
     """One contact of all runs."""
     contact = runs.follow(numerics).contacts[number]
-    cheap, curve = numerics.varied(steps=runs.cheap), partial(runs.curve, number)
-    (mesh, by_mesh), half = tells_of_mesh(cheap), numerics.varied(steps=numerics.steps // 2)
+    half, curve = numerics.varied(steps=numerics.steps // 2), partial(runs.curve, number)
+    cheap = half if runs.rings else numerics.varied(steps=runs.cheap)
+    mesh, by_mesh = tells_of_mesh(cheap)
     penalty, stiffer = other_setting(cheap, "penalty")
     coarse = min(cheap, mesh, key=attrgetter("elements_per_contact"))  # it is fine enough to tell of the far field
     far, farther = other_setting(coarse, "far_radius")
@@ -170,19 +173,33 @@ def _judged(runs: WaveRuns, number: int, numerics: WaveNumerics) -> Judged:
     pulse, step = (FRONTS, _last_step(contact.march)) if runs.rings else (1.0, 0.0)
     changes: dict[str, Causes] = {
         "mesh": (
-            Moved.between(curve(cheap), curve(mesh), trust * by_mesh, pulse=pulse),
+            Moved.between(curve(cheap), curve(mesh), trust * by_mesh, pulse=pulse, rings=runs.rings),
             reading(contact.march, contact.strike, numerics),
         ),
         "penalty": (Moved.between(curve(cheap), curve(penalty), factor(ORDER["penalty"], stiffer)),),
         "time_step": (
             EndMoved.between(
-                curve(numerics), curve(half), trust * factor(ORDER["time_step"], False), pulse=pulse, step=step
+                curve(numerics),
+                curve(half),
+                trust * factor(ORDER["time_step"], False),
+                pulse=pulse,
+                rings=runs.rings,
+                step=step,
             ),
             Swung(own, SAFETY * numerics.swing, max(numerics.echoes, 1.0)),
         ),
         "far_field": (Moved.between(curve(coarse), curve(far), factor(ORDER["far_field"], farther)),),
     }
     return own, changes
+
+
+def _fallen(curve: Curve) -> Array:
+    """When the force is the last time as large as the shares of ``FALLING``, s, (n,)."""
+    time, force = curve.dense_time, np.append(curve.dense_force[:-1], 0.0)
+    last = np.array([np.flatnonzero(force >= share * force.max())[-1] for share in FALLING])
+    left, right = force[last], force[last + 1]
+    excess = (left - force.max() * np.array(FALLING)) / (left - right)
+    return np.asarray(time[last] + excess * (time[last + 1] - time[last]))
 
 
 def _last_step(march: March) -> float:
@@ -195,10 +212,21 @@ class Moved(Variation):
     """A change of the motion at equal times, not at equal shares of the contact.
 
     What chatters at the end of a contact moves the time at which it ends, and hardly the speed after it.
-    ``pulse``: times what order one tells of the force, where it may have pulses that both settings miss.
+    ``pulse``: times what order one tells of the force, where it may have pulses that both settings miss; ``rings``:
+    whether one may come near the end, where that counts which any of the late fall of the force tells of it.
     """
 
     pulse: float = 1.0
+    rings: bool = False
+
+    @cached_property
+    def errors(self) -> dict[str, float]:
+        """Error of every quantity, in its unit."""
+        errors = super().errors
+        if not self.rings or not self.first.separated or not self.second.separated:
+            return errors
+        fall = float(np.abs(_fallen(self.first) - _fallen(self.second)).max())
+        return errors | {"duration": max(errors["duration"], self.factor * fall)}
 
     def force(self, time: Array) -> Array:
         """Error of the force at times, N."""

@@ -222,6 +222,28 @@ def test_two_lengths_of_step_that_agree_on_the_end_may_still_miss_half_a_step_of
     assert 0.5 * step < waves.EndMoved(curve, curve, 1.25, step=step).errors["duration"] < step
 
 
+def pulsed(height: float) -> Curve:
+    """The made-up force, of which a pulse from a far pole adds so much to the end of its fall; it ends when it did."""
+    made = march(STEPS, 0.0)
+    pulse = height * np.clip((made.time - 0.9) / 0.08, 0.0, 1.0) ** 2
+    return Curve.of(replace(made, impulse=made.impulse + pulse), STRIKE)
+
+
+@pytest.mark.parametrize("kind", [waves.Moved, waves.EndMoved])
+def test_two_settings_that_agree_on_the_end_after_a_pulse_do_so_by_chance(kind: type[waves.Moved]) -> None:
+    """Where a ball rings the end is known no better than when the force falls through a share of its peak."""
+    first, second = pulsed(0.0), pulsed(0.002)
+    fallen = []
+    for curve in (first, second):
+        time = np.linspace(0.9, 1.0, 10_001)
+        force = curve.force(time)
+        fallen.append(time[np.flatnonzero(force >= 0.05 * curve.dense_force.max())[-1]])
+    apart = abs(fallen[1] - fallen[0])
+    assert apart > 5e-3
+    assert kind(first, second, 1.25).errors["duration"] < 0.5 * apart
+    assert kind(first, second, 1.25, rings=True).errors["duration"] > apart
+
+
 @pytest.mark.parametrize("fails", ["first", "second"])
 def test_a_setting_whose_run_fails_tells_nothing(fails: str) -> None:
     known = Curve.of(march(STEPS, 0.0), STRIKE)
