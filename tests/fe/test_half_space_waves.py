@@ -62,6 +62,19 @@ def test_a_body_weighs_what_its_volume_does_and_waves_have_their_speeds() -> Non
         assert pressure**2 == pytest.approx(young * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson)))
 
 
+@pytest.mark.parametrize("far_radius", [6.0, 12.0])
+def test_of_what_waves_take_along_half_is_strain_wherever_the_mesh_ends(far_radius: float) -> None:
+    """A material that relaxes long after the contact holds in its waves what the ball lost, half of it at rest."""
+    material = {"law": "sls", "E1": 3e10, "E2": 3e9, "C1": 3e10, "nu": 0.3, "density": 3000.0}
+    scene = Scene.load("steel-ball-waves", {"target.material": material, "striker.velocity": 5.0})
+    energy = marched(scene, **QUICK, far_radius=far_radius)[0].energy
+    lost = energy["in"] - energy["out"] - energy["numerical"]
+    assert lost > 0.05 * energy["in"]
+    assert energy["viscous"] < 1e-3 * lost
+    assert energy["stored"] == pytest.approx(0.5 * lost, rel=0.1)
+    assert energy["radiated"] == pytest.approx(0.5 * lost, rel=0.1)
+
+
 @pytest.mark.family
 @pytest.mark.parametrize(("poisson", "young"), [(0.0, 7e10), (0.45, 3e9)])
 def test_the_ball_loses_what_its_force_radiates(poisson: float, young: float) -> None:
