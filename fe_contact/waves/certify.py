@@ -66,6 +66,7 @@ FRONTS = (2.0 ** ORDER["time_step"] - 1.0) / (math.sqrt(2.0) - 1.0)
 DEGREE, REACH = 3, 2  # of the polynomial through all steps so many rows to either side
 MISSED = 0.5 * SAFETY  # of a step, by which a ball that rings leaves sooner or later than both lengths of step say
 FALLING = (0.02, 0.03, 0.05, 0.07, 0.1)  # of the largest force: below, points that part one by one tell how it falls
+HELD_BY_WAVES = ("stored", "radiated")  # terms of the energy account
 ROUNDS = 3  # refinements before giving up
 GROWTH = {
     "mesh": Growth(ORDER["mesh"], step=2**0.25, most=2.0, work=2.0),
@@ -188,7 +189,7 @@ def _judged(runs: WaveRuns, number: int, numerics: WaveNumerics) -> Judged:
             ),
             Swung(own, SAFETY * numerics.swing, max(numerics.echoes, 1.0)),
         ),
-        "far_field": (Moved.between(curve(coarse), curve(far), factor(ORDER["far_field"], farther)),),
+        "far_field": (FarMoved.between(curve(coarse), curve(far), factor(ORDER["far_field"], farther)),),
     }
     return own, changes
 
@@ -263,6 +264,22 @@ class EndMoved(Moved):
         """Error of every quantity, in its unit."""
         errors = super().errors
         return errors | {"duration": max(errors["duration"] * UNORDERED / self.factor, MISSED * self.step)}
+
+
+@dataclass(frozen=True)
+class FarMoved(Moved):
+    """The same by how far the mesh reaches, near whose end waves hold as much motion as strain only on average.
+
+    Of how much they hold of either no order tells.
+    """
+
+    @cached_property
+    def energies(self) -> dict[str, float]:
+        """Error of every term of the energy account, J."""
+        unordered = max(UNORDERED / self.factor, 1.0)
+        return {
+            term: error * unordered if term in HELD_BY_WAVES else error for term, error in super().energies.items()
+        }
 
 
 @dataclass(frozen=True)
