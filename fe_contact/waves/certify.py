@@ -224,10 +224,14 @@ class Moved(Variation):
     def errors(self) -> dict[str, float]:
         """Error of every quantity, in its unit."""
         errors = super().errors
+        return errors | {"duration": max(errors["duration"], self.fall)}
+
+    @cached_property
+    def fall(self) -> float:
+        """Error, s, of when the force has fallen; 0: none comes near the end, or it is cut off."""
         if not self.rings or not self.first.separated or not self.second.separated:
-            return errors
-        fall = float(np.abs(_fallen(self.first) - _fallen(self.second)).max())
-        return errors | {"duration": max(errors["duration"], self.factor * fall)}
+            return 0.0
+        return self.factor * float(np.abs(_fallen(self.first) - _fallen(self.second)).max())
 
     def force(self, time: Array) -> Array:
         """Error of the force at times, N."""
@@ -262,8 +266,8 @@ class EndMoved(Moved):
     @cached_property
     def errors(self) -> dict[str, float]:
         """Error of every quantity, in its unit."""
-        errors = super().errors
-        return errors | {"duration": max(errors["duration"] * UNORDERED / self.factor, MISSED * self.step)}
+        end = self._error("duration", self._duration) * UNORDERED / self.factor
+        return super().errors | {"duration": max(end, self.fall, MISSED * self.step)}
 
 
 @dataclass(frozen=True)
