@@ -36,7 +36,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fe_contact.assembly.forms import Array
-from fe_contact.budget.budget import Causes, TotalWork, shares_of
+from fe_contact.budget.budget import LOST, Causes, TotalWork, shares_of
 from fe_contact.budget.certify import other_mesh, other_setting
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import Plan
@@ -225,6 +225,15 @@ class Moved(Variation):
         """Error of every quantity, in its unit."""
         errors = super().errors
         return errors | {"duration": max(errors["duration"], self.fall)}
+
+    @cached_property
+    def energies(self) -> dict[str, float]:
+        """Error of every term of the energy account, J; what is lost of the motion of a ball that rings may ring on."""
+        energies = super().energies
+        if not self.rings:
+            return energies
+        left, other = (sum(curve.energy[term] for term in ("stored", *LOST)) for curve in (self.first, self.second))
+        return energies | {"stored": max(energies["stored"], self.factor * abs(left - other))}
 
     @cached_property
     def fall(self) -> float:

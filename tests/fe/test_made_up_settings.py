@@ -255,6 +255,15 @@ def test_what_waves_hold_of_motion_and_strain_near_the_end_of_the_mesh_is_truste
     assert found["viscous"] == pytest.approx(trusted * by)
 
 
+@pytest.mark.parametrize("rings", [True, False])
+def test_what_steps_take_of_the_motion_of_a_ball_may_be_what_it_rings_with(rings: bool) -> None:
+    """Two lengths of step that damp all of its ringing alike, of which one takes a hundredth of a joule more."""
+    first, taken = Curve.of(march(STEPS, 0.0), STRIKE), 0.01
+    second = replace(first, energy=first.energy | {"numerical": taken, "out": -taken})
+    change = waves.EndMoved(first, second, 1.25, rings=rings)
+    assert change.energies["stored"] == pytest.approx(1.25 * taken if rings else 0.0)
+
+
 @pytest.mark.parametrize("fails", ["first", "second"])
 def test_a_setting_whose_run_fails_tells_nothing(fails: str) -> None:
     known = Curve.of(march(STEPS, 0.0), STRIKE)
