@@ -213,8 +213,9 @@ class Moved(Variation):
     """A change of the motion at equal times, not at equal shares of the contact.
 
     What chatters at the end of a contact moves the time at which it ends, and hardly the speed after it.
-    ``pulse``: times what order one tells of the force, where it may have pulses that both settings miss; ``rings``:
-    whether one may come near the end, where that counts which any of the late fall of the force tells of it.
+    ``pulse``: times what order one tells of the force, where it may have pulses that both settings miss, and of when it
+    peaks, which the slope of a pulse moves where the force is flat; ``rings``: whether one may come near the end, where
+    that counts which any of the late fall of the force tells of it.
     """
 
     pulse: float = 1.0
@@ -224,7 +225,7 @@ class Moved(Variation):
     def errors(self) -> dict[str, float]:
         """Error of every quantity, in its unit."""
         errors = super().errors
-        return errors | {"duration": max(errors["duration"], self.fall)}
+        return errors | {"duration": max(errors["duration"], self.fall), "peak_time": self.pulse * errors["peak_time"]}
 
     @cached_property
     def energies(self) -> dict[str, float]:
@@ -232,8 +233,8 @@ class Moved(Variation):
         energies = super().energies
         if not self.rings:
             return energies
-        left, other = (sum(curve.energy[term] for term in ("stored", *LOST)) for curve in (self.first, self.second))
-        return energies | {"stored": max(energies["stored"], self.factor * abs(left - other))}
+        own, other = (sum(curve.energy[term] for term in ("stored", *LOST)) for curve in (self.first, self.second))
+        return energies | {"stored": max(energies["stored"], self.factor * abs(own - other))}
 
     @cached_property
     def fall(self) -> float:
@@ -290,9 +291,7 @@ class FarMoved(Moved):
     def energies(self) -> dict[str, float]:
         """Error of every term of the energy account, J."""
         unordered = max(UNORDERED / self.factor, 1.0)
-        return {
-            term: error * unordered if term in HELD_BY_WAVES else error for term, error in super().energies.items()
-        }
+        return {term: error * unordered if term in HELD_BY_WAVES else error for term, error in super().energies.items()}
 
 
 @dataclass(frozen=True)

@@ -264,6 +264,14 @@ def test_what_steps_take_of_the_motion_of_a_ball_may_be_what_it_rings_with(rings
     assert change.energies["stored"] == pytest.approx(1.25 * taken if rings else 0.0)
 
 
+def test_a_pulse_that_two_settings_miss_moves_the_peak_in_time_as_much_as_the_force_there() -> None:
+    first, second = (Curve.of(march(STEPS, error), STRIKE) for error in (0.0, ERROR))
+    alone, missed = (waves.Moved(first, second, 1.25, pulse=pulse) for pulse in (1.0, 3.0))
+    peak = np.array([first.quantities["peak_time"]])
+    assert missed.force(peak) == pytest.approx(3.0 * alone.force(peak))
+    assert missed.errors == pytest.approx(alone.errors | {"peak_time": 3.0 * alone.errors["peak_time"]})
+
+
 @pytest.mark.parametrize("fails", ["first", "second"])
 def test_a_setting_whose_run_fails_tells_nothing(fails: str) -> None:
     known = Curve.of(march(STEPS, 0.0), STRIKE)
