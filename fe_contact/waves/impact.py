@@ -139,15 +139,16 @@ def energies(moving: Moving, found: Motion, scene: Scene, rest: LeftBehind | Non
     """Terms in J at the end. What waves in an endless elastic body hold without a load never comes back: radiated.
 
     Of a viscoelastic one, and under a load, motion alone is counted so: strain has still to relax. It is half of what
-    waves hold, of those too that have left the mesh. What a striker that yields holds beside the motion of its centre
-    of mass is stored, and what stays at ``rest`` where a body has flowed.
+    waves hold, of those too that have left the mesh since the touch. What a striker that yields holds beside the motion
+    of its centre of mass is stored, and what stays at ``rest`` where a body has flowed.
     """
     last, waves = found.samples[-1].energies, 0.0
     if moving.endless:
         swift, strained = moving.in_striker(found.final)
         gone = scene.geometry.material.young.is_elastic and left(found.samples[-1])
         stays = strained if rest is None else rest.energy
-        still = last.strain - stays if gone else -0.5 * last.radiated
+        leaving = last.radiated - found.samples[0].energies.radiated
+        still = last.strain - stays if gone else -0.5 * leaving
         waves = last.rigid + last.deformable - swift + still
     return account(found, scene.reduced_mass, waves)
 
