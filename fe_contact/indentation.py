@@ -272,6 +272,7 @@ def expected(indenter: Indenter, depth: Array, numerics: Numerics) -> Array:
     if indenter.target.fixed_radius(indenter.shape) is not None:
         return overlapping
     ends, flat = [int(depth.argmin()), int(depth.argmax())], indenter.profile.flat_radius
+    flat = flat if indenter.target.endless else 0.0  # what is round bends away from a flat end as from a wide one
     coarse, beyond = numerics.varied(elements_per_contact=SCOUTING, order=SCOUTING_ORDER), overlapping - flat
     reach = flat + beyond[ends] * np.array([LEAST_SHARE, LARGEST_SHARE])
     body: Still = TARGETS.get(indenter.target.name).still(indenter, reach, coarse)

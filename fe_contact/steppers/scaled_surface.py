@@ -30,7 +30,6 @@ from functools import cached_property, partial
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import brentq
 
 from fe_contact.assembly.cache import Recipe, cached_surface
 from fe_contact.assembly.forms import Array
@@ -216,6 +215,8 @@ class Stepper(OfSurface):
             step *= 2.0
             near = min(expected * math.exp(step if wider else -step), most)
         if (reaching(near) > 0.0) is not wider:
+            from scipy.optimize import brentq  # late: penalties need none
+
             scale = float(brentq(reaching, expected, near, xtol=SHARP * surface.spacing * expected))
             reaching(scale)
             found = scale, 1.0, known[scale][0]

@@ -102,11 +102,13 @@ def radiated_share(material: Material, pulse: Pulse, length: float | None = None
 def met_at_once(material: Material, pulse: Pulse, area: float) -> float | None:
     """Over the peak force what a flat end of this ``area``, m2, meets at the touch: density c v, c held sideways.
 
-    The modulus is what is left of it after half the pulse; None where no wave speed is finite.
+    The modulus is what is left of it after half the pulse; infinite where the volume stays, None where nothing springs.
     """
     density, speed = material.density, math.sqrt(2.0 * pulse.energy / pulse.mass)
-    if density is None or not material.young.spring or math.isinf(material.bulk) or pulse.force == 0.0:
+    if density is None or not material.young.spring or pulse.force == 0.0:
         return None
+    if math.isinf(material.bulk):
+        return math.inf
     confined = material.confined_modulus()
     modulus = float(confined(0.5 * pulse.duration)) if confined.relaxed else confined.glassy
     return math.sqrt(modulus * density) * speed * area / pulse.force

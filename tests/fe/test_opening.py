@@ -181,7 +181,8 @@ def test_a_penalty_is_that_of_the_last_contact_and_what_the_mesh_does_not_hold_i
 
     contact: Any = SimpleNamespace(
         scale=0.5, places=np.array([0.1]), numerics=SimpleNamespace(penalty=12.0),
-        enforcement=SimpleNamespace(enforce=enforce), surface=SimpleNamespace(rim=None),
+        enforcement=SimpleNamespace(enforce=enforce, settling="another"),
+        surface=SimpleNamespace(rim=None, operator=SimpleNamespace(watched=None)),
     )  # fmt: skip
     surface = PressedSurface(np.eye(1), np.eye(1), np.ones(1))
     steps: Any = [SimpleNamespace(radius=0.2)] if pressed else []
