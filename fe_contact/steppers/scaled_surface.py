@@ -67,9 +67,7 @@ COARSE = np.geomspace(1e-6, 1.0, 200)  # where, in units of the memory's reach, 
 CLOSING = 1.5  # power of the time left with which the gap closes before an edge
 EDGE = 1.0 - 1e-9  # of the unit mesh, safe from rounding
 SHARES, WEIGHTS = gauss(8)  # of a step, by Gauss's rule
-FARTHEST = (
-    1.0  # logarithm of a scale over the expected one, up to about which the one is looked for that ends at a node
-)
+FARTHEST = 1.0  # logarithm of a scale over the expected one, up to about which one is looked for that ends at a node
 SHARP = 1e-3  # work: of the distance of two nodes, within which the edge is brought to one
 ANYWHERE = 0.5  # the same window where nodes press one by one and none ends the contact: the mesh stays
 VANISHING = 1e-4  # contact that shrinks by this much within a step is lost
