@@ -182,6 +182,7 @@ def _answer(law: ForceLaw, scene: Scene, track: PointTrack, outcomes: Sequence[O
     last = moved.contacts[-1]
     impulse = impulse_of(scene, moved.end, last.last.rate, last.end_time, until)
     said = _fewer(scene, len(outcomes)) if moved.end is End.SEPARATED else moved.end.value
+    stiff = () if law.remembers else tuple(_stiffest(law, one) for one in moved.contacts)
     return Answer(
         track.rows,
         _ImpactColumns(law, track),
@@ -192,10 +193,10 @@ def _answer(law: ForceLaw, scene: Scene, track: PointTrack, outcomes: Sequence[O
         until,
         tuple(outcome._asdict() for outcome in outcomes) if scene.motion.impacts > 1 else (),
         scene.reduced_mass,
-        0.0 if law.remembers else max(_stiffest(law, one).largest for one in moved.contacts),
+        max((one.largest for one in stiff), default=0.0),
         scene.reduced_mass * (scene.velocity + abs(last.last.rate) + abs(scene.gravity) * last.end_time),
-        {} if law.remembers else _rounded(law, scene, moved),
-        _late(law, scene, moved) if scene.motion.impacts > 1 and not law.remembers else (),
+        _rounded(stiff, scene, moved) if stiff else {},
+        _late(law, stiff, scene, moved) if stiff and scene.motion.impacts > 1 else (),
     )
 
 
@@ -222,30 +223,31 @@ def _stiffest(law: ForceLaw, one: Contact) -> Stiffest:
     return Stiffest(*found)
 
 
-def _rounded(law: ForceLaw, scene: Scene, moved: PointMotion) -> dict[str, float]:
+def _rounded(stiff: Sequence[Stiffest], scene: Scene, moved: PointMotion) -> dict[str, float]:
     """What the last digit of the depth changes: of a force so steep that it falls within few digits a good share.
 
     That sends the striker off at another speed, and the slower it leaves the later it is out.
     """
-    first, all_of = _stiffest(law, moved.contacts[0]), [_stiffest(law, one) for one in moved.contacts]
-    force = math.sqrt(sum(one.squared_force for one in all_of))
-    speed = LAST_DIGIT * first.passed / scene.reduced_mass
+    force = math.sqrt(sum(one.squared_force for one in stiff))
+    speed = LAST_DIGIT * stiff[0].passed / scene.reduced_mass
     leaving = abs(moved.contacts[0].last.rate)
     return {
-        "history_l2": DIGITS * math.sqrt(sum(one.squared for one in all_of)) / force if force else 0.0,
+        "history_l2": DIGITS * math.sqrt(sum(one.squared for one in stiff)) / force if force else 0.0,
         "duration": moved.contacts[0].end_time * min(speed / leaving, 1.0) if leaving else 0.0,
         "restitution": speed / scene.velocity,
     }
 
 
-def _late(law: ForceLaw, scene: Scene, moved: PointMotion) -> tuple[tuple[float, float], ...]:
+def _late(
+    law: ForceLaw, stiff: Sequence[Stiffest], scene: Scene, moved: PointMotion
+) -> tuple[tuple[float, float], ...]:
     """By how much rounding of depths and rates lets each contact begin later or sooner, s, and its first force, N.
 
     A flight lasts twice the speed over gravity; and who leaves the more slowly, leaves the later.
     """
     late = [0.0]
-    for one in moved.contacts[:-1]:
-        speed = LAST_DIGIT * (abs(one.first.rate) + _stiffest(law, one).passed / scene.reduced_mass)
+    for one, met in zip(moved.contacts[:-1], stiff[:-1], strict=True):
+        speed = LAST_DIGIT * (abs(one.first.rate) + met.passed / scene.reduced_mass)
         lasted, leaving = one.end_time - one.start_time, abs(one.last.rate)
         flight = 2.0 * speed / scene.gravity if scene.gravity > 0.0 else 0.0
         late.append(late[-1] + flight + (lasted * min(speed / leaving, 1.0) if leaving else 0.0))
