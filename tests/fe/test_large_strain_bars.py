@@ -8,16 +8,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import TypeVar
 
 import numpy as np
 import pytest
+from finer_runs import answered, compare_forces_with_finer
 
 from fe_contact import run
 from fe_contact.indentation import indent
-from fe_contact.solids.newton import BeyondRange
-from lumped import NotReached, Result, Scene
-from lumped.indentation import Indentation
+from lumped import Scene
 from lumped.materials import Material, Relaxation
 from lumped.materials.energies.base import ENERGIES
 from lumped.scene.indenter import Indenter
@@ -93,22 +91,6 @@ def pair(random: np.random.Generator, name: str) -> tuple[Indenter, float]:
 PAIRS = ("washer", "block", "o_ring", "ring", "line", "cone", "cone, layer", "power")
 
 
-Answer = TypeVar("Answer", Indentation, Result)
-
-
-def answered(ask: Callable[[], Answer], converged: list[bool]) -> Answer | None:
-    """Note whether it converged, or not at all where the material ends; None where a named failure says why."""
-    try:
-        found = ask()
-    except BeyondRange:
-        return None
-    except NotReached:
-        converged.append(False)
-        return None
-    converged.append(found.converged)
-    return found
-
-
 def compare_with_finer(
     one: Scene, uncovered: Callable[..., dict[str, float]], converged: list[bool], wrong: list[str]
 ) -> None:
@@ -126,14 +108,7 @@ def test_finer_runs_lie_within_both_bars(campaign_size: Callable[..., int]) -> N
     count, random = campaign_size(SCENES), np.random.default_rng(18)
     converged, wrong = list[bool](), list[str]()
     for _ in range(count if count == SCENES else 1):
-        pressed, depths = scene(random)
-        loose = answered(partial(indent, pressed, depths, {"tolerance": TOLERANCE}), converged)
-        tight = loose and answered(partial(indent, pressed, depths, {"tolerance": 0.25 * TOLERANCE}), [])
-        if loose is None or tight is None:
-            continue
-        apart = np.abs(loose.force - tight.force) / (loose.force_error + tight.force_error)
-        if apart.max() > 1.0:
-            wrong.append(f"{pressed.material} {pressed.target} {depths}: {apart}")
+        compare_forces_with_finer(*scene(random), TOLERANCE, converged, wrong)
     assert not wrong
     assert np.mean(converged) >= LEAST
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
+from finer_runs import compare_forces_with_finer
 
 from fe_contact import run
 from fe_contact.indentation import indent
@@ -25,7 +25,6 @@ from lumped.scene.tables import Model
 from lumped.shapes.punch import Punch
 from lumped.targets import HalfSpace, Target
 from lumped.targets.layer import Layer
-from tests.fe.test_large_strain_bars import answered
 
 SCENES = 20
 LARGE = Model(kinematics="finite")
@@ -88,14 +87,7 @@ def test_finer_runs_lie_within_both_bars(campaign_size: Callable[..., int]) -> N
     count, random = campaign_size(SCENES), np.random.default_rng(31)
     converged, wrong = list[bool](), list[str]()
     for _ in range(count):
-        pressed, depths = drawn(random)
-        loose = answered(partial(indent, pressed, depths, {"tolerance": 2e-2}), converged)
-        tight = loose and answered(partial(indent, pressed, depths, {"tolerance": 5e-3}), [])
-        if loose is None or tight is None:
-            continue
-        apart = np.abs(loose.force - tight.force) / (loose.force_error + tight.force_error)
-        if apart.max() > 1.0:
-            wrong.append(f"{pressed.material} {pressed.target} {depths}: {apart}")
+        compare_forces_with_finer(*drawn(random), 2e-2, converged, wrong)
     assert not wrong
     assert np.mean(converged) >= 0.95
 
