@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +19,7 @@ SINE_PULSE = 1.21532
 # Share of G^(-3/2) in phase, below which the peak may change either way: at 0.8 nine times less than what is radiated,
 # at none by twice as much (tests/fe/test_half_space_waves.py).
 LEAST_TURNED, EITHER_WAY = 0.85, 2.0
+LAST_NU = 0.4999  # rubber's: a bulk modulus 5000 times the shear modulus
 GAUSS_POINTS = 64  # Gauss points over the angle of each part of the waves
 
 
@@ -102,14 +103,13 @@ def radiated_share(material: Material, pulse: Pulse, length: float | None = None
 def met_at_once(material: Material, pulse: Pulse, area: float) -> float | None:
     """Over the peak force what a flat end of this ``area``, m2, meets at the touch: density c v, c held sideways.
 
-    The modulus is what is left of it after half the pulse; infinite where the volume stays, None where nothing springs.
+    The modulus is what is left of it after half the pulse; None where nothing springs. What keeps its volume is taken
+    as rubber is, for waves in it have no end of speed.
     """
     density, speed = material.density, math.sqrt(2.0 * pulse.energy / pulse.mass)
     if density is None or not material.young.spring or pulse.force == 0.0:
         return None
-    if math.isinf(material.bulk):
-        return math.inf
-    confined = material.confined_modulus()
+    confined = replace(material, nu=min(material.nu, LAST_NU)).confined_modulus()
     modulus = float(confined(0.5 * pulse.duration)) if confined.relaxed else confined.glassy
     return math.sqrt(modulus * density) * speed * area / pulse.force
 

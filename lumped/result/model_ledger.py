@@ -46,7 +46,6 @@ ROD_END = 0.65
 IN_AN_IMPACT = 0.5  # of the change at one depth, since what was brought is given
 ROWS, NEWTON = 200, 8  # steps in an impact that tells of a modulus, and of Newton's method in each
 LIKE_HALF_SPACES = (HalfSpace, SphereTarget, Plane)  # near the contact
-MOST_MET = 4.0  # look: over the peak, beyond it nobody asks how many times; without end in what keeps its volume
 TIP = 1e-4  # rounding: of a tip's radius, where the gap beside it is a parabola to 1e-8
 ALMOST_FLAT = 1.0 + 1e-6  # rounding: exponent of the force below which a profile counts as flat
 FLOW = 0.047  # 1/(1 + FLOW ln^2 w): how force falls behind Hertz'; tests/fe/test_plastic.py finds it again
@@ -178,9 +177,8 @@ def _left_out_or_met(geometry: Geometry, pulse: Pulse) -> LeftOut:
     met = met_at_once(geometry.material, pulse, area) if area else None
     if left_out.size is None or met is None:
         return left_out
-    more = min(max(met, 2.0 * met - 1.0) if comes_back else met - 1.0, MOST_MET)
-    said = percent(met) if more < MOST_MET else f"more than {MOST_MET:g} times as much"
-    return LeftOut(more, f"a flat end meets {said} at the touch, over the peak") if more > left_out.size else left_out
+    more = max(met, 2.0 * met - 1.0) if comes_back else met - 1.0
+    return LeftOut(more, f"a flat end meets {percent(met)} of it at the touch") if more > left_out.size else left_out
 
 
 def gravity(scene: Scene, model: Model, peak: Peak, mass: float) -> LedgerEntry:
