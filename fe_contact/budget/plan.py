@@ -29,7 +29,7 @@ from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.fixed_area import Column
 from lumped.load_curves.sampled import SampledCurve
 from lumped.materials import Material, Relaxation
-from lumped.result.model_ledger import Ledger, Peak
+from lumped.result.model_ledger import Ledger, Peak, pulse_lasts
 from lumped.result.result import LedgerEntry
 from lumped.scene.geometry import Geometry, stiffest_impact
 from lumped.scene.indenter import Indenter
@@ -93,7 +93,7 @@ def plan(scene: Scene, given: Given) -> Plan:
         contact_time=contact_time,
         peak_share=peak_share,
     )
-    lasts = size.duration or 2.0 * max(size.peak_time, 0.0)  # a peak at the touch may lie a rounding before it
+    lasts = pulse_lasts(size.duration, size.peak_time, scene.motion.end_time or contact_time)
     peak = Peak(size.peak_force, size.peak_depth, size.contact_radius, lasts)
     return Plan(placed.varied(**given), frozenset(given) - {"tolerance"}, Ledger(scene, peak, scene.model))
 

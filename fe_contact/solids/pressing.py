@@ -20,6 +20,7 @@ from fe_contact.bodies.pressing import PressedDepths, half_width
 from fe_contact.errors import ContactTooWide
 from fe_contact.progress import Counted, uncounted
 from fe_contact.settings import Numerics
+from fe_contact.solids import sharp_rim
 from fe_contact.solids.base import State, elliptic
 from fe_contact.solids.bulk import Bulk, CoredBody, Rolled
 from fe_contact.solids.contact import Obstacle, OnDeformed, OnRound, OnTop, Points, Skin, flat_places
@@ -158,7 +159,7 @@ def _core(body: ElasticBody) -> Indices:
 
 def check_large(source: str, geometry: Geometry, model: Model, enforcement: str, impacts: int | None = None) -> None:
     """Raise BadInput for what is not pressed with large strains in this version, or struck in so many ``impacts``."""
-    faults = finite_faults(source, model, geometry, impacts)
+    faults = finite_faults(source, model, geometry, impacts) or sharp_rim.faults(source, geometry)
     if enforcement != CORRECTED:
         reason = f"{enforcement} is not built with large strains in this version; accepted: {CORRECTED}"
         faults.append(Fault(source, "numerics.enforcement", reason))

@@ -17,10 +17,12 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.solids.newton import EquilibriumLost
-from lumped.errors import NotReached
+from lumped.errors import Fault, NotReached
 from lumped.indentation import Indentation
 from lumped.numbers import Clock
+from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
+from lumped.shapes.base import SIZE
 from lumped.shapes.rounded_punch import RoundedPunch
 
 STEP = math.sqrt(8.0)  # from one radius of the edge to the next
@@ -36,10 +38,25 @@ BEGUN = 2  # place of an edge narrow enough to tell a depth within two per cent
 Press = Callable[[Indenter, float], Indentation]  # an indenter to all depths, to a tolerance
 
 
+def edges_of(geometry: Geometry) -> tuple[float, ...]:
+    """Radii of the edges, m, the widest first, that are not too small to be a length."""
+    flat = geometry.shape.flat_radius
+    length = min(flat, geometry.target.body_depth or flat)
+    return tuple(share * length for share in EDGES if share * length >= SIZE.low)
+
+
+def faults(source: str, geometry: Geometry) -> list[Fault]:
+    """What is wrong with a punch, or a layer under it, too small for as many edges as tell a limit."""
+    if not geometry.sharp_rim or len(edges_of(geometry)) >= FEWEST:
+        return []
+    reason = f"too small for large strains; accepted from {SIZE.low / EDGES[FEWEST - 1]:.3g} m on, a layer as thick"
+    return [Fault(source, "striker.radius", f"{geometry.shape.flat_radius:g}: {reason}")]
+
+
 def rounded(indenter: Indenter, place: int = BEGUN) -> Indenter:
-    """The same with one of the edges around its flat end. Raises BadInput for one too small."""
-    flat = indenter.shape.flat_radius
-    return replace(indenter, shape=RoundedPunch(flat, EDGES[place] * min(flat, indenter.target.body_depth or flat)))
+    """The same with one of the edges around its flat end."""
+    shape = RoundedPunch(indenter.shape.flat_radius, edges_of(indenter.geometry)[place])
+    return replace(indenter, shape=shape)
 
 
 def narrowed(indenter: Indenter, tolerance: float, press: Press) -> Indentation:
@@ -48,7 +65,7 @@ def narrowed(indenter: Indenter, tolerance: float, press: Press) -> Indentation:
     Raises NotReached where three edges have none, or no limit; BadInput as ``press`` does.
     """
     clock, found, best = Clock(), list[Indentation](), None
-    for place in range(len(EDGES)):
+    for place in range(len(edges_of(indenter.geometry))):
         try:
             found.append(press(rounded(indenter, place), SHARE * tolerance))
             if len(found) < FEWEST:

@@ -68,7 +68,7 @@ CLOSING = 1.5  # power of the time left with which the gap closes before an edge
 EDGE = 1.0 - 1e-9  # of the unit mesh, safe from rounding
 SHARES, WEIGHTS = gauss(8)  # of a step, by Gauss's rule
 FARTHEST = 1.0  # logarithm of a scale over the expected one, up to about which one is looked for that ends at a node
-SHARP = 1e-3  # work: of the distance of two nodes, within which the edge is brought to one
+NEAR_NODE = 1e-3  # work: of the distance of two nodes, within which the edge is brought to one
 ANYWHERE = 0.5  # the same window where nodes press one by one and none ends the contact: the mesh stays
 VANISHING = 1e-4  # contact that shrinks by this much within a step is lost
 
@@ -215,7 +215,7 @@ class Stepper(OfSurface):
         if (reaching(near) > 0.0) is not wider:
             from scipy.optimize import brentq  # late: penalties need none
 
-            scale = float(brentq(reaching, expected, near, xtol=SHARP * surface.spacing * expected))
+            scale = float(brentq(reaching, expected, near, xtol=NEAR_NODE * surface.spacing * expected))
             reaching(scale)
             found = scale, 1.0, known[scale][0]
         iterations = sum(solution.iterations for solution, _ in known.values())

@@ -21,7 +21,7 @@ from fe_contact.errors import WavesTooDear
 from fe_contact.settings import RANGES, Given, Numerics, WaveNumerics
 from lumped.laws.mdr import ImpactScales
 from lumped.materials import Relaxation
-from lumped.result.model_ledger import Peak, model_ledger
+from lumped.result.model_ledger import Peak, model_ledger, pulse_lasts
 from lumped.scene.scene import Scene
 
 DEFAULT_TOLERANCE = 3e-3  # of a peak force; what chatter at the contact's edge leaves is about a third
@@ -128,7 +128,8 @@ def placed(
         "echoes": echoes.number,
         "swing": 0.0 if shown and given.get("steps", steps) >= fewest else echoes.swing,
     }
-    peak = Peak(scales.peak_force, scales.peak_depth, scales.contact_radius, scales.duration or 2.0 * scales.peak_time)
+    lasts = pulse_lasts(scales.duration, scales.peak_time, scene.motion.end_time or duration)
+    peak = Peak(scales.peak_force, scales.peak_depth, scales.contact_radius, lasts)
     return Plan(WaveNumerics(**{**chosen, **given}), frozenset(given) - {"tolerance"}, model_ledger(scene, peak))
 
 

@@ -184,8 +184,7 @@ def _impulse_missed(fine: Answer, coarse: Answer, times: Array) -> float:
 
 def _largest_and_norm(fine: Answer, times: Array, force: Array, missed: Array) -> tuple[float, float]:
     """Largest difference of two forces over time, N, and its L2 norm over that of the force."""
-    # by the trapezoidal rule, twice: of both norms
-    apart, norm = float(np.diff(times) @ (missed[1:] ** 2 + missed[:-1] ** 2)), _squared(fine, times, force)
+    apart, norm = _squared(fine, times, missed), _squared(fine, times, force)
     return float(np.abs(missed).max()), math.sqrt(apart / norm) if norm else 0.0
 
 

@@ -213,14 +213,15 @@ class Stiffest(NamedTuple):
 
 def _stiffest(law: ForceLaw, one: Contact) -> Stiffest:
     """That of a contact, from the nodes of its steps."""
-    found = [0.0, 0.0, 0.0, 0.0]
+    largest = passed = squared = squared_force = 0.0
     for stage, step in ((phase.stage, step) for phase in one.phases for step in phase.steps):
         pressed = np.maximum(step.depth, TINY)
         stiff = np.abs(law.tangents(pressed, step.rate, stage)[0] * pressed)
-        found[0] = max(found[0], float(stiff.max()))
-        means = (float(stiff.mean()), float((stiff**2).mean()), float((step.force**2).mean()))
-        found[1:] = [sum_ + step.length * mean for sum_, mean in zip(found[1:], means, strict=True)]
-    return Stiffest(*found)
+        largest = max(largest, float(stiff.max()))
+        passed += step.length * float(stiff.mean())
+        squared += step.length * float((stiff**2).mean())
+        squared_force += step.length * float((step.force**2).mean())
+    return Stiffest(largest, passed, squared, squared_force)
 
 
 def _rounded(stiff: Sequence[Stiffest], scene: Scene, moved: PointMotion) -> dict[str, float]:

@@ -20,8 +20,8 @@ from lumped.materials.material import Material
 from lumped.numbers import Array
 
 NODES = 48  # of Gauss: both integrals to 1e-6, as twice as many tell
-# Power of a profile from which on it counts as flat, which is the most and for slip a tenth more: the depth that grown
-# punches leave ends there where beta is large, and digits with it.
+# Power of a profile from which on it counts as flat. That adds the most, for slip a tenth more than this power; beyond
+# it, where beta is large, differences of depths lose their digits.
 FLATTEST = 30.0
 
 

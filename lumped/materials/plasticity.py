@@ -19,17 +19,15 @@ SYMMETRIC = np.array([[1.0, 0, 0, 0, 0], [0, 0.5, 0.5, 0, 0], [0, 0, 0, 1.0, 0],
 GRADIENT = [0, 1, 1, 2, 3]  # components of a symmetric tensor by those of a gradient
 OFTEN = np.array([1.0, 2.0, 1.0, 1.0])
 VOLUME = np.array([1.0, 0.0, 0.0, 1.0, 1.0])  # of a gradient: its trace
-
-
 DEPTHS = np.linspace(0.0, 1.5, 301)  # over the contact radius: Hertz' contacts yield first within, C to 1e-5
 
 
 def first_yield(nu: float, plane: bool = False) -> float:
     """C: a Hertz contact first yields, by von Mises, where its peak pressure is C Y; 1.61 at nu = 0.3, 0.67 at -0.8.
 
-    The largest stress on the axis (Johnson, ISBN 978-0-521-34796-9, eq. 3.45) or, for nu below -0.3, at the edge of the
-    contact, where (1 - 2 nu)/3 of the pressure pulls outwards and pushes around. In ``plane`` strain beneath the middle
-    (eq. 4.46); 1.79 at nu = 0.3.
+    The largest stress on the axis (Johnson, ISBN 978-0-521-34796-9, eq. 3.45) or, for nu below -0.34, at the edge of
+    the contact, where (1 - 2 nu)/3 of the pressure pulls outwards and pushes around. In ``plane`` strain below the
+    middle, or at it for nu below 0.19 (eq. 4.46); 1.79 at nu = 0.3.
     """
     if plane:
         root = np.sqrt(1.0 + DEPTHS**2)

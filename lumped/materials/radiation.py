@@ -16,10 +16,10 @@ from lumped.numbers import bisected, gauss
 HERTZ_PULSE = 1.8 * 2.943275 * math.gamma(0.8) * math.gamma(1.5) / math.gamma(2.3)
 # The same of a line's pulse, nearly a sine: (1/2pi) int |w| |F(w)|^2 dw / F_max^2, a number without the duration.
 SINE_PULSE = 1.21532
-# Share of G^(-3/2) in phase, below which the peak may change either way: at 0.8 nine times less than what is radiated,
-# at none by twice as much (tests/fe/test_half_space_waves.py).
+# Below this share of G^(-3/2) in phase it is not known whether the peak rises or falls. Measured by finite elements
+# (tests/fe/test_half_space_waves.py): at 0.8 it falls by a ninth of what is radiated, at 0 it rises by twice as much.
 LEAST_TURNED, EITHER_WAY = 0.85, 2.0
-LAST_NU = 0.4999  # rubber's: a bulk modulus 5000 times the shear modulus
+RUBBER = 0.4999  # physics: its Poisson's ratio, a bulk modulus 5000 times the shear modulus
 GAUSS_POINTS = 64  # Gauss points over the angle of each part of the waves
 
 
@@ -70,7 +70,7 @@ def shear_speed(material: Material) -> float | None:
 
 
 class Radiated(NamedTuple):
-    """Share of the energy of a pulse, to first order, above 1 where that ends.
+    """Share of the energy of a pulse, to first order: more than 1 where first order no longer holds.
 
     `lost`: whether the material takes so much of a wave that it tells how large an effect is at most, not which way.
     """
@@ -100,18 +100,24 @@ def radiated_share(material: Material, pulse: Pulse, length: float | None = None
     return Radiated(work / pulse.energy * (EITHER_WAY if lost else turned), lost)
 
 
-def met_at_once(material: Material, pulse: Pulse, area: float) -> float | None:
-    """Over the peak force what a flat end of this ``area``, m2, meets at the touch: density c v, c held sideways.
+def held_wave_speed(material: Material, time: float) -> float | None:
+    """Of waves held sideways, m/s, by what is left of the modulus after a ``time``, s; None where nothing springs.
 
-    The modulus is what is left of it after half the pulse; None where nothing springs. What keeps its volume is taken
-    as rubber is, for waves in it have no end of speed.
+    What keeps its volume is taken as rubber is, for waves in it have no end of speed.
     """
-    density, speed = material.density, math.sqrt(2.0 * pulse.energy / pulse.mass)
-    if density is None or not material.young.spring or pulse.force == 0.0:
+    if material.density is None or not material.young.spring:
         return None
-    confined = replace(material, nu=min(material.nu, LAST_NU)).confined_modulus()
-    modulus = float(confined(0.5 * pulse.duration)) if confined.relaxed else confined.glassy
-    return math.sqrt(modulus * density) * speed * area / pulse.force
+    confined = replace(material, nu=min(material.nu, RUBBER)).confined_modulus()
+    modulus = float(confined(time)) if confined.relaxed and time > 0.0 else confined.spring
+    return math.sqrt(modulus / material.density)
+
+
+def met_at_once(material: Material, pulse: Pulse, area: float) -> float | None:
+    """Over the peak force what a flat end of this ``area``, m2, meets at the touch: density c v; None where unknown."""
+    wave, speed = held_wave_speed(material, 0.5 * pulse.duration), math.sqrt(2.0 * pulse.energy / pulse.mass)
+    if wave is None or material.density is None or pulse.force == 0.0:
+        return None
+    return material.density * wave * speed * area / pulse.force
 
 
 def _both_waves(g: float, power: int = 0) -> float:

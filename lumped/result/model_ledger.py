@@ -46,6 +46,7 @@ ROD_END = 0.65
 IN_AN_IMPACT = 0.5  # of the change at one depth, since what was brought is given
 ROWS, NEWTON = 200, 8  # steps in an impact that tells of a modulus, and of Newton's method in each
 LIKE_HALF_SPACES = (HalfSpace, SphereTarget, Plane)  # near the contact
+AT_TOUCH = 1e-6  # rounding: share of a contact before which a peak is the touch itself
 TIP = 1e-4  # rounding: of a tip's radius, where the gap beside it is a parabola to 1e-8
 ALMOST_FLAT = 1.0 + 1e-6  # rounding: exponent of the force below which a profile counts as flat
 FLOW = 0.047  # 1/(1 + FLOW ln^2 w): how force falls behind Hertz'; tests/fe/test_plastic.py finds it again
@@ -64,10 +65,17 @@ class Peak:
 
     @classmethod
     def of(cls, quantities: Mapping[str, Quantity], history: History) -> Peak:
-        """Of an impact; where its contact does not end, the pulse lasts twice as long as to its peak."""
+        """Of an impact."""
         number = {name: quantity.value or 0.0 for name, quantity in quantities.items()}
-        duration = number["duration"] or 2.0 * number["peak_time"]
+        duration = pulse_lasts(number["duration"], number["peak_time"], float(history.time[-1]))
         return cls(number["peak_force"], number["peak_depth"], float(history.contact_radius.max()), duration)
+
+
+def pulse_lasts(duration: float | None, peak_time: float, followed: float) -> float:
+    """How long, s: the contact, or where that does not end twice as long as to its peak; all the time for which it is
+    ``followed``, s, where it peaks at the touch.
+    """
+    return duration or (2.0 * peak_time if peak_time > AT_TOUCH * followed else followed)
 
 
 def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[LedgerEntry, ...]:
@@ -86,7 +94,7 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
         series(scene, peak),
         striker(scene),
         gravity(scene, resolved, peak, scene.mass),
-        plasticity(scene, resolved, peak, IN_AN_IMPACT),
+        plasticity(scene, resolved, peak, struck=True),
         adhesion(scene, peak),
         *friction(scene, resolved, peak, impact=True),
     ]
@@ -178,7 +186,9 @@ def _left_out_or_met(geometry: Geometry, pulse: Pulse) -> LeftOut:
     if left_out.size is None or met is None:
         return left_out
     more = max(met, 2.0 * met - 1.0) if comes_back else met - 1.0
-    return LeftOut(more, f"a flat end meets {percent(met)} of it at the touch") if more > left_out.size else left_out
+    if more <= left_out.size:
+        return left_out
+    return LeftOut(more, f"a flat end meets {percent(met)} of the peak force at the touch")
 
 
 def gravity(scene: Scene, model: Model, peak: Peak, mass: float) -> LedgerEntry:
@@ -438,8 +448,8 @@ def series(scene: Scene, peak: Peak) -> LedgerEntry:
     return LedgerEntry(effect, treated, bound if math.isfinite(bound) else None, "bound until the contact recedes")
 
 
-def plasticity(scene: Scene | Indenter, model: Model, peak: Peak, share: float = 1.0) -> LedgerEntry:
-    """At the same depth F = F_Hertz/(1 + 0.047 ln^2 w), w the depth over that of first yield; of that a ``share``.
+def plasticity(scene: Scene | Indenter, model: Model, peak: Peak, struck: bool = False) -> LedgerEntry:
+    """At the same depth F = F_Hertz/(1 + 0.047 ln^2 w), w the depth over that of first yield; ``struck``: half of it.
 
     What finite elements find without hardening at nu = 0.3, to a sixth for w = 1.5 to 30; Jackson and Green 2005 (doi
     10.1115/1.1866166) to a tenth up to w = 100. A rim yields before; of two bodies the one that does so first counts.
@@ -456,12 +466,12 @@ def plasticity(scene: Scene | Indenter, model: Model, peak: Peak, share: float =
         ratios.append((stress / material.yield_strength, material))
     over, material = max(ratios, key=lambda one: one[0])
     if target.sides(shape):
-        change = yielded_alike(over, material, target.sides(shape) == "free", struck=share < 1.0)
+        change = yielded_alike(over, material, target.sides(shape) == "free", struck)
     else:
         softer = FLOW * math.log(max(over, 1.0) ** 2) ** 2
         if target.fixed_radius(shape) is not None:
             softer += RIM * min(over, 1.0) ** 2
-        change = share * softer / (1.0 + softer)
+        change = (IN_AN_IMPACT if struck else 1.0) * softer / (1.0 + softer)
     note = f"von Mises finds {over:.3g} Y where it is elastic"
     impacts = scene.motion.impacts if isinstance(scene, Scene) else 1
     refused = plasticity_faults("", replace(model, plasticity=True), scene.geometry, impacts)

@@ -140,7 +140,9 @@ class Target(Record, ABC):
         return local
 
     def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> LeftOut:
-        """Here as on the half-space: waves take the share w of the energy, half of it before the peak, and
+        """What a contact without the body's inertia errs by.
+
+        Here as on the half-space: waves take the share w of the energy, half of it before the peak, and
         F ~ energy^(3/5) loses 0.3 w, as does nearly a line's F ~ energy^(1/2).
         """
         found = radiated_share(material, pulse, shape.total if shape.plane else None)

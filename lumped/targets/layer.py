@@ -17,7 +17,7 @@ from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.layer import BASES, LayerCurve, LayerPunch, LineLayer, PointLayer
 from lumped.load_curves.tabulated import REACH
 from lumped.materials import Material
-from lumped.materials.radiation import Pulse
+from lumped.materials.radiation import Pulse, held_wave_speed
 from lumped.schema.keys import Choice, Key, Number, Part
 from lumped.shapes.base import Shape
 from lumped.targets._strains import Pressed
@@ -126,11 +126,8 @@ MEMBER = Part(Layer)
 
 def _echoed(material: Material, duration: float, thickness: float) -> bool:
     """Whether the fastest waves have gone through a layer, m, and back by half of a pulse, s."""
-    if math.isinf(material.bulk) or not material.young.spring or material.density is None:
-        return True
-    confined = material.confined_modulus()
-    modulus = float(confined(0.5 * duration)) if confined.relaxed and duration > 0.0 else confined.spring
-    return 0.5 * duration * math.sqrt(modulus / material.density) > 2.0 * thickness
+    speed = held_wave_speed(material, 0.5 * duration)
+    return speed is None or 0.5 * duration * speed > 2.0 * thickness
 
 
 def moving_share(nu: float, base: str, breadth: float, way: float, plane: bool) -> float:

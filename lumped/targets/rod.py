@@ -12,6 +12,7 @@ from lumped.materials import Material
 from lumped.materials.radiation import Pulse
 from lumped.schema.keys import Choice, Key, Number, Part
 from lumped.shapes.base import Shape
+from lumped.targets._strains import StrainField, alike
 from lumped.targets.base import LOST_FORCE, LeftOut, Target
 
 # What comes back of a wave of velocity from the other end.
@@ -62,6 +63,20 @@ class Rod(Target):
         sent = HERTZ_SQUARE * pulse.force**2 * pulse.duration / self.impedance(stiffness, density)
         share = sent / pulse.energy
         return LeftOut(min(LOST_FORCE * share, 1.0), f"sends {share:.2g} of the kinetic energy down the rod")
+
+    def mises(self, shape: Shape, nu: float, force: float, contact_radius: float) -> float:
+        """Under a flat end, which strikes the whole section, its pressure on that."""
+        return super().mises(shape, nu, force, contact_radius) if shape.fixed_radius is None else force / self.area
+
+    def sides(self, shape: Shape) -> str:
+        """Free, where all of it is strained alike."""
+        return "" if shape.fixed_radius is None else "free"
+
+    def strains(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> StrainField:
+        """Under a flat end alike all along; else near the dent."""
+        if shape.fixed_radius is None:
+            return super().strains(shape, nu, depth, contact_radius)
+        return alike(nu, depth / self.length, free=True)
 
     def waves_under(self, shape: Shape) -> bool:
         """Always."""

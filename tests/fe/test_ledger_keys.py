@@ -250,3 +250,16 @@ def test_what_is_planned_says_what_the_exact_impact_does() -> None:
     planned = {entry.effect: entry.estimate for entry in plan(scene, {}).ledger}
     for effect in ("target inertia", "constant nu against constant bulk modulus"):
         assert planned[effect] == pytest.approx(exact[effect], rel=0.05), effect
+
+
+@pytest.mark.parametrize("end_time", [1e-3, None])
+def test_a_contact_that_peaks_at_the_touch_lasts_while_it_is_followed(end_time: float | None) -> None:
+    """A dashpot under a punch: law and plan say one thing, and waves have had that time."""
+    material = {"law": "kelvin_voigt", "E": 1e6, "eta": 3e4, "nu": 0.1, "density": 1000.0}
+    striker = {"shape": "punch", "radius": 0.03, "mass": 4.0, "velocity": 0.003}
+    tables: dict[str, object] = {"striker": striker, "target": {"shape": "half_space", "material": material}}
+    scene = Scene.from_dict(tables | ({} if end_time is None else {"motion": {"end_time": end_time}}))
+    exact = simulate(laws.ting.of(scene), scene, 1e-3).model_ledger
+    (first,), (second,) = ([one for one in told if one.effect == INERTIA] for told in (exact, plan(scene, {}).ledger))
+    assert first.size == pytest.approx(second.size, rel=0.05)
+    assert first.size > 0.05

@@ -153,10 +153,28 @@ def test_an_impact_by_a_punch() -> None:
     assert work == pytest.approx(0.5 * 300.0**2, rel=2.0 * 3e-2)
 
 
+def test_a_tiny_punch_has_fewer_edges() -> None:
+    """As many as are a nanometre wide; a tight tolerance is missed then, no more."""
+    pressed = replace(punch(), shape=Punch(5e-8))
+    places = list[float]()
+
+    def press(one: Indenter, tolerance: float) -> Indentation:
+        places.append(float(one.shape.edge_radius))  # type: ignore[attr-defined]  # it is a RoundedPunch
+        found = exact(one, (1e-8,), "ting", tolerance=tolerance)
+        return replace(found, budget={"mesh": found.force_error / found.force}, work={"contact_problems": 1})
+
+    found = narrowed(pressed, 1e-6, press)
+    assert not found.converged
+    assert min(places) >= 1e-9
+    assert len(places) == FEWEST
+
+
 def test_what_is_not_built_is_refused_with_what_is() -> None:
     relaxing = Relaxation(1e6, (1e6,), (0.01,))
     scene = Scene(Punch(1.0), 1.0, 300.0, replace(punch().material, young=relaxing), target=HalfSpace(), model=LARGE)
     with pytest.raises(BadInput, match=r"striker.shape: a punch, whose rim is sharp.*accepted: rounded_punch"):
         run(scene, tolerance=3e-2)
+    with pytest.raises(BadInput, match=r"radius: 2e-09: too small for large strains; accepted from 3.2e-08 m on"):
+        indent(replace(punch(), shape=Punch(2e-9)), (1e-10,), {"tolerance": 1e-2})
     with pytest.raises(BadInput, match=r"striker.shape: .*accepted: a radius below 0.4 m, 20 thicknesses"):
         indent(punch(Layer(0.02, "bonded")), (1e-3,), {"tolerance": 1e-2})

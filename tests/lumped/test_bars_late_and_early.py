@@ -217,3 +217,17 @@ def test_a_jump_at_a_touch_after_a_long_flight_may_come_as_late_as_that_is_round
     jump = 2.0 * float(damped * leaving)
     norm = math.sqrt(np.trapezoid(found.history.force**2, found.history.time))
     assert math.sqrt(late) * jump / norm <= found.quantities["history_l2"].error
+
+
+def test_flights_tell_nothing_of_the_bars_of_contacts() -> None:
+    """Three contacts of a spring with flights 1e8 times as long between them: each peaks at m g + v sqrt(k m)."""
+    found = result("linear_spring", 1e-3, k=1e6, velocity=10.0, gravity=1e-4, impacts=3)
+    peak = found.quantities["peak_force"]
+    assert abs((peak.value or 0.0) - 1e4 - 1e-4) <= (peak.error or 0.0) < 1e-2
+
+
+def test_a_mass_that_hardly_moves_upon_a_soft_spring_is_followed() -> None:
+    """An event may fall on the beginning of a step."""
+    law = {"name": "hertzdamp", "k": 1e-3, "e": 0.1}
+    scene = Scene.from_dict({"striker": {"mass": 1e6, "velocity": 1e-6}, "law": law, "model": {"gravity": 9.81}})
+    assert laws.get("hertzdamp").of(scene).simulate(scene, 1e-6).history.force.max() > 0.0

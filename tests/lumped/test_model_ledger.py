@@ -499,3 +499,17 @@ def test_of_two_free_balls_the_one_that_is_slower_to_answer_counts() -> None:
         changes = {**keys, "striker.mass": mass, "target.mass": mass, f"{soft}.material.E": 1e5}
         found.append(model_ledger(Scene.load("two-finite-spheres", changes), peak)[0].estimate)
     assert found == pytest.approx([0.05 / 10.0, 0.05 / 10.0])
+
+
+@pytest.mark.parametrize(("radius", "velocity"), [(0.002, 1.0), (0.2, 10.0)])
+def test_a_flat_end_strikes_the_whole_section_of_a_rod(radius: float, velocity: float) -> None:
+    """It yields by density c v, whatever the striker's radius; strains are those of the column."""
+    steel = {"law": "elastic", "E": 2e11, "nu": 0.3, "density": 7850.0, "yield_strength": 3e8}
+    striker = {"shape": "punch", "radius": radius, "mass": 1.0, "velocity": velocity}
+    rod = {"shape": "rod", "area": 1e-3, "length": 1.0, "end": "absorbing", "material": steel}
+    scene = Scene.from_dict({"striker": striker, "target": rod, "model": {"inertia": True}})
+    found = simulate(laws.rod_waves.of(scene), scene, 1e-3)
+    (entry,) = [one for one in found.model_ledger if one.effect == "plasticity"]
+    over = velocity * math.sqrt(2e11 * 7850.0) / 3e8
+    assert entry.note.startswith(f"von Mises finds {over:.3g} Y")
+    assert (entry.size > 0.0) is (over > 1.0)

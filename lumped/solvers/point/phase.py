@@ -238,6 +238,8 @@ class PointMarch:
 
     def _ending(self, step: Step, event: Event, length: float) -> Nodes:
         """The nodes of a step of another length, s, which ends with an event."""
+        if length == 0.0:  # a step that ends where it begins
+            return NODES
         left = self.law.grading(self.stage) if event.surfaces and step.nodes.power == 1 else 1
         if left > 1:
             return NODES.graded(left, begun=0.0, mirrored=True)
