@@ -259,7 +259,7 @@ class BodyStill:
         gap, height = -solution.signed_pressure, target.lead * depth - overlap
         radius = fixed or half_width(self.places, solution.signed_pressure, gap, height=height)
         if not solution.converged or radius == 0.0:
-            raise IndentationNotSettled(depth, ENFORCEMENTS.get(self.numerics.enforcement).settling)
+            raise IndentationNotSettled(depth, enforcement.settling)
         if not np.isfinite(radius):
             raise ContactTooWide(depth)
         force = self.operator.force(self.scale, solution.pressure)

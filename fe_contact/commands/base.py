@@ -108,8 +108,6 @@ KINEMATICS = option(
     default="small",
     help="finite: where each exponent leaves its small-strain value, for two energies",
 )
-
-
 MEASURE = option("--measure", action="store_true", help="run the larger model of each effect above the tolerance")
 
 

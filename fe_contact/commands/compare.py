@@ -32,8 +32,9 @@ def execute(args: argparse.Namespace) -> int:
     if args.measure:
         from fe_contact.studies.larger_models import measure, measured_lines
 
-        comparison = replace(comparison, larger=measure(scene, given, run.progress))
-        lines = measured_lines(comparison.larger or (), comparison.reference.model_ledger)
+        larger = measure(scene, given, run.progress)
+        comparison = replace(comparison, larger=larger)
+        lines = measured_lines(larger, comparison.reference.model_ledger)
     content = comparison_content(comparison)
     _, told = base.publish(run.where, partial(write_comparison, comparison), partial(plot_comparison, comparison))
     for remark in remarks:
