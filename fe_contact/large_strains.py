@@ -116,10 +116,10 @@ def depth_reached(scene: Scene) -> float:
             reached = solid.advanced(reached, depth, stiffness)
         balance = reached.balance
         brought = 0.5 * scene.reduced_mass * scene.velocity**2 + scene.reduced_mass * scene.gravity * depth
-        more = brought / (joule * balance.energy)
+        more = brought / (joule * balance.taken)
         if abs(more - 1.0) < NEAR:
             break
-        depth *= more ** (balance.energy / (balance.force * balance.depth))
+        depth *= more ** (balance.taken / (balance.force * balance.depth))
     return depth
 
 

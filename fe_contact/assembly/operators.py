@@ -268,7 +268,8 @@ class SolidMesh:
     ``mean_radius``, in that unit, of a ring of round section, whose surface counts angles from its top; ``covered``:
     whether a plane touches all of the surface from the first; ``ends``: whether the mesh is all of it; ``lead``: share
     of a depth that is pressed here, half of it where both sides are alike; ``sharp``: whether it has corners between a
-    held and a free side, where stresses are infinite.
+    held and a free side, where stresses are infinite; ``datum``, sparse (1, 2 N): how far the place comes up from which
+    depth is measured, None where that is at rest.
     """
 
     body: ElasticBody
@@ -279,6 +280,7 @@ class SolidMesh:
     ends: bool = False
     lead: float = 1.0
     sharp: bool = False
+    datum: Matrix | None = None
 
 
 @on_disk

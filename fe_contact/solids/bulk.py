@@ -191,7 +191,8 @@ def _keys(numbers: Indices, free: int) -> Indices:
 class CoredBody:
     """A ``core`` that answers by a ``response``; ``rest`` (n, n) stiffness of all else between ``rim`` nodes' (n,)
     degrees of freedom, and ``pull`` (n,) the forces that it bears undeformed, where it remembers; ``free`` degrees of
-    freedom of the core that are not held.
+    freedom of the core that are not held; ``datum`` (2 N,): by all degrees of freedom of the core how far the place
+    comes up from which depth is measured, zero where that is at rest.
     """
 
     core: Bulk
@@ -200,16 +201,28 @@ class CoredBody:
     pull: Array
     rim: Indices
     free: Indices
+    datum: Array
 
     @classmethod
     def whole(cls, core: Bulk, response: Response, fixed: Indices) -> CoredBody:
         """All of which answers by the response."""
-        none = np.zeros(0, dtype=int)
-        return cls(core, response, np.zeros((0, 0)), np.zeros(0), none, np.setdiff1d(np.unique(core.dofs), fixed))
+        none, free = np.zeros(0, dtype=int), np.setdiff1d(np.unique(core.dofs), fixed)
+        return cls(core, response, np.zeros((0, 0)), np.zeros(0), none, free, np.zeros(core.size))
 
     @classmethod
-    def of(cls, core: Bulk, response: Response, stiffness: Matrix, fixed: Indices, state: State = ()) -> CoredBody:
-        """Of the linear ``stiffness`` of the whole body, (2 N, 2 N), of which the core at rest is a part."""
+    def of(
+        cls,
+        core: Bulk,
+        response: Response,
+        stiffness: Matrix,
+        fixed: Indices,
+        state: State = (),
+        datum: Matrix | None = None,
+    ) -> CoredBody:
+        """Of the linear ``stiffness`` of the whole body, (2 N, 2 N), of which the core at rest is a part.
+
+        ``datum``, sparse (1, 2 N): how far the place from which depth is measured comes up; None where it is at rest.
+        """
         at_rest = core.answered(np.zeros(core.size), response, state)
         everything = np.arange(core.size)
         inner = Pattern.of([core.dofs], everything, core.size).matrix([at_rest.matrices()])
@@ -220,10 +233,15 @@ class CoredBody:
         rim = np.setdiff1d(np.intersect1d(within, loaded), fixed)
         outer = np.setdiff1d(np.setdiff1d(loaded, within), fixed)
         rest = beside[rim][:, rim].toarray()
+        comes_up = np.zeros(core.size) if datum is None else datum.toarray()[0]
         if outer.size:
             coupling = beside[outer][:, rim]
-            rest -= coupling.T @ factorized(beside[outer][:, outer].tocsc())(coupling.toarray())
-        return cls(core, response, 0.5 * (rest + rest.T), np.zeros(rim.size), rim, np.setdiff1d(within, fixed))
+            follows = factorized(beside[outer][:, outer].tocsc())(coupling.toarray())
+            rest -= coupling.T @ follows
+            comes_up[rim] -= comes_up[outer] @ follows
+            comes_up[outer] = 0.0
+        free = np.setdiff1d(within, fixed)
+        return cls(core, response, 0.5 * (rest + rest.T), np.zeros(rim.size), rim, free, comes_up)
 
     def forces(self, loaded: Loaded, displacement: Array) -> Array:
         """Nodal forces (2 N,) of all of it, where a displacement (2 N,) has ``loaded`` its core."""

@@ -89,13 +89,14 @@ class Encounter:
     ) -> Balance:
         """Body and striker with the mesh displaced so, (2 N,), after ``state``; ``touching`` as of a skin."""
         loaded = self.body.core.answered(displacement, self.body.response, state)
-        touch = self.skin.pressed(displacement, self.obstacle, depth, stiffness, touching)
+        way = depth - float(self.body.datum @ displacement)
+        touch = self.skin.pressed(displacement, self.obstacle, way, stiffness, touching)
         return Balance(self, displacement, depth, state, loaded, touch)
 
 
 @dataclass(frozen=True, eq=False)
 class Balance:
-    """Energy, its derivative and second derivative by the free degrees of freedom."""
+    """Energy, its derivative and second derivative by the free degrees of freedom, at a ``depth`` below the datum."""
 
     encounter: Encounter
     displacement: Array
@@ -110,6 +111,16 @@ class Balance:
         body = self.encounter.body
         rim = self.displacement[body.rim]
         return self.loaded.energy + float(rim @ (0.5 * body.rest @ rim + body.pull)) + self.touch.energy
+
+    @property
+    def way(self) -> float:
+        """Of the striker: where a datum goes down with the body, longer than the depth."""
+        return self.depth - float(self.encounter.body.datum @ self.displacement)
+
+    @property
+    def taken(self) -> float:
+        """Energy that the striker brought along the depth: a datum, far below, moves in proportion to the force."""
+        return self.energy - 0.5 * self.force * (self.way - self.depth)
 
     @property
     def force(self) -> float:
@@ -142,7 +153,22 @@ class Balance:
             tangent = self.encounter.pattern.matrix(blocks)
         if not np.isfinite(tangent.data).all():
             raise EquilibriumLost(f"the contact is as wide as the striker at depth {self.depth:.3g}")
-        return factorized(tangent, ordered=True)
+        return self._below_datum(factorized(tangent, ordered=True), touch)
+
+    def _below_datum(self, solve: Callable[[Array], Array], touch: Touch) -> Callable[[Array], Array]:
+        """Back-substitution at the same depth, by that at the same way: as the datum comes up, so does the striker."""
+        body = self.encounter.body
+        datum = body.datum[body.free]
+        if not datum.any():
+            return solve
+        follows = solve(touch.stiffening[body.free])
+        share = follows / (1.0 - datum @ follows)
+
+        def solved(forces: Array) -> Array:
+            found = solve(forces)
+            return np.asarray(found + share * (datum @ found))
+
+        return solved
 
     @property
     def _at_rest(self) -> Loaded:
@@ -180,9 +206,14 @@ class Equilibrium:
 
     @property
     def rigid_force(self) -> float:
-        """On the striker if the penalty were rigid, to first order in its softness."""
-        touch = self.balance.touch
-        return 2.0 * touch.force + float(touch.forces @ self.rate)
+        """On the striker if the penalty were rigid, to first order in its softness.
+
+        Along the same way it is the slope of the energy; what a datum gives way to that lengthens the way.
+        """
+        touch, datum = self.balance.touch, self.balance.encounter.body.datum
+        by_way = self.rate / (1.0 - datum @ self.rate)
+        hardening = touch.stiffening[1::2].sum() + touch.stiffening @ by_way
+        return float(2.0 * touch.force + touch.forces @ by_way - hardening * (datum @ self.softened))
 
     @property
     def rigid(self) -> tuple[Array, Loaded]:
@@ -236,7 +267,7 @@ def balanced(
     found = _hastened(here, at, settled, foreseen)
     if found is not None:
         return found
-    if hasty:
+    if hasty or encounter.body.datum.any():  # below a datum no energy is least
         raise EquilibriumLost(f"no equilibrium in {HASTY} whole steps")
     return _descending(here, at, settled)
 

@@ -99,7 +99,7 @@ class Solid:
         if mesh.ends:
             whole = CoredBody.whole(core, response, body.fixed)
         else:
-            whole = CoredBody.of(core, response, body.stiffness(bulk, shear), body.fixed)
+            whole = CoredBody.of(core, response, body.stiffness(bulk, shear), body.fixed, datum=mesh.datum)
         striker, placed = _touched(mesh, profile, rolled)
         skin = Skin.of(body.surface, numerics.order, core.size, placed)
         encounter = replace(Encounter.of(whole, skin, striker), covered=mesh.covered)
@@ -391,5 +391,5 @@ def contact_radius(balance: Balance) -> float:
     at_rest = balance.encounter.obstacle.along(touch.skin.place.reshape(2, -1))
     if at_rest[0] < 0.0:  # from where the first touch has come to
         along = along - np.interp(0.0, at_rest, along)
-    apart = balance.depth + touch.displacement[1].ravel() - overlap  # the undeformed surfaces
+    apart = balance.way + touch.displacement[1].ravel() - overlap  # the undeformed surfaces
     return half_width(along, overlap, -overlap, height=np.maximum(apart, 0.0))

@@ -49,6 +49,10 @@ from meshes.half_space import WAVE_GROWTH
 
 FINER = 2.0  # elements at the surface over those which the growth into the body is for, where strains are large
 ENDS = ("base", "side")  # of a box of it
+# Half-plane of large strains: what goes as their square leaves an error of first order in the size, so that its size
+# goes as the square of the setting, and is the same as at small strains where that is least.
+FARTHER = 0.5
+FARTHEST = 1e5  # that size at most: strains are rounding there
 DATUM = 0.6  # size of the mesh over the datum's depth, per far radius of the settings, which is 2 at least
 
 
@@ -165,6 +169,8 @@ def _upwards(basis: Basis, depth: float) -> Matrix:
 
 def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:
     """The half-space for large strains, on one mesh for all contacts; ``radii`` expected of them, m."""
+    if indenter.shape.plane:
+        return _plane_solid(indenter, radii, numerics)
     zone = Zone.of(radii, FINITE_MARGIN, indenter.profile.flat_radius)
     elements = FINITE_REFINEMENT * numerics.elements_per_contact
     body = _solid(elements, (zone.smallest, zone.flat, zone.beside), numerics.far_radius, numerics.order)
@@ -180,10 +186,33 @@ def _solid(elements: float, ends: tuple[float, float, float], far_radius: float,
     return ElasticBody(basis, partial(_stiffness, basis), 2 * basis.get_dofs("axis").flatten(), flat(basis))
 
 
-def _stiffness(basis: Basis, bulk: float, shear: float) -> Matrix:
+def _stiffness(
+    basis: Basis, bulk: float, shear: float, ends: tuple[str, ...] = ("far",), plane: bool = False
+) -> Matrix:
     """Of body and far field, of any modulus, (2 N, 2 N)."""
     modulus = 4.0 * shear * (3.0 * bulk + shear) / (3.0 * bulk + 4.0 * shear)
-    return modulus * system_matrix(basis, (1.5 * bulk - shear) / (3.0 * bulk + shear))
+    return modulus * system_matrix(basis, (1.5 * bulk - shear) / (3.0 * bulk + shear), ends, plane)
+
+
+def _plane_solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:
+    """The half-plane for large strains, relative to its datum."""
+    datum, zone = getattr(indenter.target, "datum_depth", None), Zone.of(radii, FINITE_MARGIN)
+    assert datum is not None
+    elements, depth = FINITE_REFINEMENT * numerics.elements_per_contact, datum / zone.reference
+    size = min(FARTHER * numerics.far_radius**2 * max(1.0, DATUM * depth), FARTHEST)
+    body = _plane_body(elements, numerics.order, zone.smallest, size)
+    return SolidMesh(body, zone.reference, datum=_upwards(body.basis, depth))
+
+
+@cached
+def _plane_body(elements: float, order: int, smallest: float, size: float) -> ElasticBody:
+    """In units of the reference radius."""
+    basis = basis_on(made(meshes.layer, elements, smallest, size, size), order)
+
+    def matrix(bulk: float, shear: float) -> Matrix:
+        return _stiffness(basis, bulk, shear, ENDS, plane=True)
+
+    return ElasticBody(basis, matrix, held(basis, along=("axis",), across=()), flat(basis, 2))
 
 
 MEMBER = MeshedTarget(still, struck=struck, whole=whole, seconds=0.1, solid=solid)

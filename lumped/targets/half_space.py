@@ -51,10 +51,6 @@ class HalfSpace(Target):
         """By its far field."""
         return True
 
-    def strained_instead(self, shape: Shape) -> str:
-        """A layer in plane strain."""
-        return 'target.shape = "layer"' if shape.plane else super().strained_instead(shape)
-
     def pressed(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> Pressed:
         """Down to the datum."""
         return replace(super().pressed(shape, nu, depth, contact_radius), thickness=self.datum_depth or inf)
