@@ -32,7 +32,7 @@ from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics, tolerance_of
 from fe_contact.solids.base import State
 from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.newton import Encounter, Equilibrium, EquilibriumLost, material_of
-from fe_contact.solids.pressing import Solid, contact_radius, exhausted, pressed_first
+from fe_contact.solids.pressing import Solid, contact_radius, exhausted
 from fe_contact.solids.relaxing import Fading, FadingLaw, doubled
 from fe_contact.steppers.steps import March, Strike, Work
 from lumped.result.model_ledger import Peak, model_ledger
@@ -208,15 +208,15 @@ class Marcher:
             pull=body.rest @ fading.held(here.rim),
         )
         solid = replace(self.solid, encounter=replace(self.body, body=relaxing))
-        lead = solid.lead * depth
-        if here.found is None:
-            return pressed_first(solid.encounter, lead, penalty, np.zeros(body.core.size), here.memory)
+        reach = solid.unit * depth
         try:
-            return solid.advanced(here.found, solid.unit * depth, penalty, self.widening, here.memory)
+            return solid.advanced(here.found, reach, penalty, self.widening, here.memory)
         except EquilibriumLost as lost:
+            if here.found is None:
+                raise
             try:  # pressed in softly instead
                 start = here.found.balance.displacement
-                return pressed_first(solid.encounter, lead, penalty, start, here.memory)
+                return solid.advanced(None, reach, penalty, self.widening, here.memory, start)
             except EquilibriumLost:
                 raise lost from None
 

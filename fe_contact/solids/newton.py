@@ -26,6 +26,9 @@ ROUNDING = 1e-14  # of the energy: a trial may be higher by so much
 BLUNT = 0.05  # work: a share of Newton's step that is shorter says that its tangent is no guide
 FALLING = ((False, False), (True, False), (True, True))  # models of a body: convex, at rest
 MODELS = (FALLING, FALLING, FALLING[2:])  # to begin with, after one blunt step and after two
+WAYS = 20  # work: of the striker, tried for a depth below a datum
+NEAR_WAY = 1e-3  # of a depth: ways that differ by less have their ends by whole steps
+LEAST_DEEPENED = 1e-3  # rounding: of a way, what it adds to the depth
 SHORTEST = 1e-4  # share of a Newton step below which the energy stands still
 
 
@@ -83,6 +86,16 @@ class Encounter:
         first = Pattern.of(blocks, body.free, body.core.size)
         ordered = replace(body, free=body.free[elimination_order(first.definite)])
         return cls(ordered, skin, Pattern.of(blocks, ordered.free, body.core.size), obstacle)
+
+    @property
+    def follows(self) -> bool:
+        """Whether the striker follows a datum that moves with the body: then no energy is least in equilibrium."""
+        return bool(self.body.datum.any())
+
+    @property
+    def held(self) -> Encounter:
+        """The same with the datum held where it is."""
+        return replace(self, body=replace(self.body, datum=np.zeros_like(self.body.datum)))
 
     def at(
         self, displacement: Array, depth: float, stiffness: float, state: State = (), touching: Points | None = None
@@ -157,10 +170,10 @@ class Balance:
 
     def _below_datum(self, solve: Callable[[Array], Array], touch: Touch) -> Callable[[Array], Array]:
         """Back-substitution at the same depth, by that at the same way: as the datum comes up, so does the striker."""
+        if not self.encounter.follows:
+            return solve
         body = self.encounter.body
         datum = body.datum[body.free]
-        if not datum.any():
-            return solve
         follows = solve(touch.stiffening[body.free])
         share = follows / (1.0 - datum @ follows)
 
@@ -267,9 +280,9 @@ def balanced(
     found = _hastened(here, at, settled, foreseen)
     if found is not None:
         return found
-    if hasty or encounter.body.datum.any():  # below a datum no energy is least
+    if hasty:
         raise EquilibriumLost(f"no equilibrium in {HASTY} whole steps")
-    return _descending(here, at, settled)
+    return _with_held_datum(here, at, settled) if encounter.follows else _descending(here, at, settled)
 
 
 def _hastened(
@@ -302,6 +315,21 @@ def _hastened(
             known = None
         here = there
     return None
+
+
+def _with_held_datum(here: Balance, at: Callable[[Array], Balance], settled: float) -> Equilibrium:
+    """By ways of the striker, each with the datum held, where an energy is least. Raises EquilibriumLost."""
+    encounter, datum, depth, way = here.encounter, here.encounter.body.datum, here.depth, here.way
+    for _ in range(WAYS):
+        held = balanced(encounter.held, here.displacement, way, here.touch.stiffness, here.state, settled=settled)
+        here = at(held.balance.displacement)
+        if abs(here.way - way) <= NEAR_WAY * depth:
+            found = _hastened(here, at, settled, None)
+            if found is not None:
+                return found
+        longer = (here.way - way) / max(1.0 + float(datum @ held.rate), LEAST_DEEPENED)
+        way += float(np.clip(longer, -0.5 * way, way))
+    raise EquilibriumLost(f"no way of the striker ends at this depth below the datum in {WAYS} tries")
 
 
 def _descending(here: Balance, at: Callable[[Array], Balance], settled: float) -> Equilibrium:

@@ -113,10 +113,11 @@ class Solid:
         stiffness: float,
         widening: float = WIDENING,
         state: State = (),
+        start: Array | None = None,
     ) -> Equilibrium:
         """To a depth, m, as :func:`advanced`. Raises EquilibriumLost, which is BeyondRange where the material ends."""
         try:
-            return advanced(self.encounter, before, self.lead * depth / self.unit, stiffness, widening, state)
+            return advanced(self.encounter, before, self.lead * depth / self.unit, stiffness, widening, state, start)
         except BeyondRange as ended:
             raise BeyondRange(self.unit * ended.depth / self.lead) from None
 
@@ -309,14 +310,16 @@ def advanced(
     stiffness: float,
     widening: float = WIDENING,
     state: State = (),
+    start: Array | None = None,
 ) -> Equilibrium:
-    """From an equilibrium, or from rest, to another depth, by as many steps as it takes. Raises EquilibriumLost.
+    """From an equilibrium, or softly from a displacement ``start`` (2 N,), to another depth, by as many steps as it takes.
 
-    ``widening``: power of the depth that a contact is wide by, about; ``state``: what points remember meanwhile.
+    ``widening``: power of the depth that a contact is wide by, about; ``state``: what points remember meanwhile; no
+    ``start``: from rest. Raises EquilibriumLost.
     """
     iterations = 0
     if before is None:
-        before = _begun(encounter, depth, stiffness, state)
+        before = _begun(encounter, depth, stiffness, state, np.zeros(encounter.skin.size) if start is None else start)
         iterations = before.iterations
         if before.balance.depth == depth:
             return before
@@ -360,9 +363,9 @@ def _touching(before: Equilibrium, depth: float, widening: float) -> Points:
     return np.asarray((along >= wider * first) & (along <= wider * last))
 
 
-def _begun(encounter: Encounter, depth: float, stiffness: float, state: State) -> Equilibrium:
-    """From rest to a depth, or to the part of it that can be reached at once. Raises EquilibriumLost."""
-    start, share = np.zeros(encounter.skin.size), 1.0
+def _begun(encounter: Encounter, depth: float, stiffness: float, state: State, start: Array) -> Equilibrium:
+    """From a displacement (2 N,) to a depth, or to the part of it that can be reached at once. Raises EquilibriumLost."""
+    share = 1.0
     while True:
         try:
             return pressed_first(encounter, share * depth, stiffness, start, state)
@@ -372,7 +375,7 @@ def _begun(encounter: Encounter, depth: float, stiffness: float, state: State) -
                 raise
 
 
-def pressed_first(encounter: Encounter, depth: float, stiffness: float, start: Array, state: State = ()) -> Equilibrium:
+def pressed_first(encounter: Encounter, depth: float, stiffness: float, start: Array, state: State) -> Equilibrium:
     """From a displacement ``start`` (2 N,) far away: a stiff penalty at once would turn elements inside out."""
     iterations = 0
     for share in RAMP:

@@ -68,7 +68,9 @@ class Pressed:
     """A surface pressed by `depth`, m, where the overlap has a `fall`(r), m, to the edge of the contact at `radius`, m.
 
     In `plane` strain or round; `moving`: whether the surface moves along that profile, not with it. The body is
-    `thickness`, m, deep, on a "bonded" or a "sliding" `base`.
+    `thickness`, m, deep, on a "bonded" or a "sliding" `base`; its depth is that relative to a `datum`, m, below touch,
+    or to the base. As the energy of the cubic terms is by the way of the striker, so it is by the depth below a datum,
+    far below, which goes down in proportion to the force.
     """
 
     nu: float
@@ -79,6 +81,7 @@ class Pressed:
     thickness: float = inf
     base: str = "bonded"
     moving: bool = True
+    datum: float = inf
 
     def strains(self) -> StrainField:
         """Inside, lengths in contact radii."""
@@ -89,18 +92,19 @@ class Pressed:
         area = 2.0 * across if self.plane else 2.0 * pi * r * across
         k, pressed = self._spectrum(max(PER_CONTACT, PER_THICKNESS / thick), 1.0 + beside)
         even, odd = _kernels(np.outer(r, k), self.plane)
-        waves = pressed[:, None] * _waves(k[:, None], np.append(thick - z, thick), thick, nu, self.base)
+        up = np.concatenate([[max(thick - self.datum / self.radius, 0.0)], thick - z, [thick]])
+        waves = pressed[:, None] * _waves(k[:, None], up, thick, nu, self.base)
         out, sheared, lift, stretch = (kernel @ one for kernel, one in zip((odd, odd, even, even), waves, strict=True))
         hoop = np.zeros_like(out) if self.plane else out / r[:, None]
         gradient = np.stack([(k * even) @ waves[0] - hoop, sheared, -(k * odd) @ waves[2], stretch, hoop])
-        depth, touched = self.depth / self.radius, slice(POINTS)
-        scale = depth / -float(waves[2, :, -1].sum())
+        depth, touched, at_datum = self.depth / self.radius, slice(POINTS), float(waves[2, :, 0].sum())
+        scale = depth / (at_datum - float(waves[2, :, -1].sum()))
         pushed = scale * self._pressure(inner) * area[touched]
-        energy = -0.5 * scale * float(pushed @ lift[touched, -1])
+        energy = 0.5 * scale * float(pushed @ (at_datum - lift[touched, -1]))
         gap = scale * self._met(pushed, inner, out[touched, -1], energy) if self.moving else 0.0
         power = float(pushed.sum()) * depth / energy
         volume, growth = np.outer(area, deep).ravel(), self._growth
-        return StrainField(nu, scale * gradient[..., :-1].reshape(5, -1), volume, energy, gap, power, growth)
+        return StrainField(nu, scale * gradient[..., 1:-1].reshape(5, -1), volume, energy, gap, power, growth)
 
     def _spectrum(self, last: float, farthest: float) -> tuple[Array, Array]:
         """Waves up to the `last`, (n,), that are told apart as far out, and what each counts for in the pressure."""

@@ -53,7 +53,7 @@ class HalfSpace(Target):
 
     def pressed(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> Pressed:
         """Down to the datum."""
-        return replace(super().pressed(shape, nu, depth, contact_radius), thickness=self.datum_depth or inf)
+        return replace(super().pressed(shape, nu, depth, contact_radius), datum=self.datum_depth or inf)
 
     def yielding_faults(self, source: str, shape: Shape, inertia: bool) -> list[Fault]:
         """Only a whole body with inertia: else one E* of both tells all, and a target of shape sphere knows it."""
