@@ -32,6 +32,7 @@ class StrainField:
     """Displacement gradients (rr, rz, zr, zz, tt), shape (5, n), and their volumes (n,), at G = 1.
 
     `energy` of the whole, work of the `gap`; `power`: force x depth over energy; strains grow as depth^`growth`.
+    `datum` (5, n): what takes from the cubic terms as it meets them, where depth is measured from what gives way.
     """
 
     nu: float
@@ -41,18 +42,27 @@ class StrainField:
     gap: float
     power: float
     growth: float
+    datum: Array | None = None
 
     def change(self, law: StrainEnergy, struck: bool = False) -> float:
         """Of the force at a depth, relatively; `struck`: of the peak force where the work is given, not the depth.
 
         F = k d^n (1 + q d^m) has done the work k d^(n+1)/(n+1) (1 + q d^m (n+1)/(n+1+m)).
         """
-        scale = STEP / float(np.abs(self.gradient).max())
-        both, lame = scale * np.stack([self.gradient, -self.gradient], axis=1), 2.0 * self.nu / (1.0 - 2.0 * self.nu)
-        more, less = law.density(Invariants.of(both), 1.0, lame).value
-        cubic = 0.5 * float((more - less) @ self.volume) / scale**3
+        terms = self._cubic(law, self.gradient)
+        if self.datum is not None:  # what a cubic form changes by, to first order, exactly
+            alike = np.abs(self.gradient).max(axis=0) / np.abs(self.datum).max(axis=0)
+            more, less = (self._cubic(law, self.gradient + sign * alike * self.datum) for sign in (1.0, -1.0))
+            terms = terms - (0.5 * (more - less) - self._cubic(law, alike * self.datum)) / alike
         grown = 1.0 + self.growth if struck else self.power + self.growth
-        return (cubic + self.gap) / self.energy * grown / self.power
+        return (float(terms @ self.volume) + self.gap) / self.energy * grown / self.power
+
+    def _cubic(self, law: StrainEnergy, gradient: Array) -> Array:
+        """Terms of the energy's density, (n,)."""
+        scale = STEP / np.abs(gradient).max(axis=0)
+        both, lame = scale * np.stack([gradient, -gradient], axis=1), 2.0 * self.nu / (1.0 - 2.0 * self.nu)
+        more, less = law.density(Invariants.of(both), 1.0, lame).value
+        return np.asarray(0.5 * (more - less) / scale**3)
 
 
 def alike(nu: float, strain: float, free: bool) -> StrainField:
@@ -68,9 +78,7 @@ class Pressed:
     """A surface pressed by `depth`, m, where the overlap has a `fall`(r), m, to the edge of the contact at `radius`, m.
 
     In `plane` strain or round; `moving`: whether the surface moves along that profile, not with it. The body is
-    `thickness`, m, deep, on a "bonded" or a "sliding" `base`; its depth is that relative to a `datum`, m, below touch,
-    or to the base. As the energy of the cubic terms is by the way of the striker, so it is by the depth below a datum,
-    far below, which goes down in proportion to the force.
+    `thickness`, m, deep, on a "bonded" or a "sliding" `base`.
     """
 
     nu: float
@@ -81,7 +89,6 @@ class Pressed:
     thickness: float = inf
     base: str = "bonded"
     moving: bool = True
-    datum: float = inf
 
     def strains(self) -> StrainField:
         """Inside, lengths in contact radii."""
@@ -92,19 +99,18 @@ class Pressed:
         area = 2.0 * across if self.plane else 2.0 * pi * r * across
         k, pressed = self._spectrum(max(PER_CONTACT, PER_THICKNESS / thick), 1.0 + beside)
         even, odd = _kernels(np.outer(r, k), self.plane)
-        up = np.concatenate([[max(thick - self.datum / self.radius, 0.0)], thick - z, [thick]])
-        waves = pressed[:, None] * _waves(k[:, None], up, thick, nu, self.base)
+        waves = pressed[:, None] * _waves(k[:, None], np.append(thick - z, thick), thick, nu, self.base)
         out, sheared, lift, stretch = (kernel @ one for kernel, one in zip((odd, odd, even, even), waves, strict=True))
         hoop = np.zeros_like(out) if self.plane else out / r[:, None]
         gradient = np.stack([(k * even) @ waves[0] - hoop, sheared, -(k * odd) @ waves[2], stretch, hoop])
-        depth, touched, at_datum = self.depth / self.radius, slice(POINTS), float(waves[2, :, 0].sum())
-        scale = depth / (at_datum - float(waves[2, :, -1].sum()))
+        depth, touched = self.depth / self.radius, slice(POINTS)
+        scale = depth / -float(waves[2, :, -1].sum())
         pushed = scale * self._pressure(inner) * area[touched]
-        energy = 0.5 * scale * float(pushed @ (at_datum - lift[touched, -1]))
+        energy = -0.5 * scale * float(pushed @ lift[touched, -1])
         gap = scale * self._met(pushed, inner, out[touched, -1], energy) if self.moving else 0.0
         power = float(pushed.sum()) * depth / energy
         volume, growth = np.outer(area, deep).ravel(), self._growth
-        return StrainField(nu, scale * gradient[..., 1:-1].reshape(5, -1), volume, energy, gap, power, growth)
+        return StrainField(nu, scale * gradient[..., :-1].reshape(5, -1), volume, energy, gap, power, growth)
 
     def _spectrum(self, last: float, farthest: float) -> tuple[Array, Array]:
         """Waves up to the `last`, (n,), that are told apart as far out, and what each counts for in the pressure."""

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from math import inf
+from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from lumped.errors import BadInput, Fault
@@ -11,7 +10,8 @@ from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.half_plane import HalfPlane
 from lumped.schema.keys import Key, Number, Part
 from lumped.shapes.base import Shape
-from lumped.targets._strains import Pressed
+from lumped.targets._half_plane_strains import half_plane_strains
+from lumped.targets._strains import StrainField
 from lumped.targets.base import Target
 
 
@@ -51,9 +51,11 @@ class HalfSpace(Target):
         """By its far field."""
         return True
 
-    def pressed(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> Pressed:
-        """Down to the datum."""
-        return replace(super().pressed(shape, nu, depth, contact_radius), datum=self.datum_depth or inf)
+    def strains(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> StrainField:
+        """Of a half-plane, below the datum."""
+        if self.datum_depth is None:
+            return super().strains(shape, nu, depth, contact_radius)
+        return half_plane_strains(nu, depth, contact_radius, self.datum_depth)
 
     def yielding_faults(self, source: str, shape: Shape, inertia: bool) -> list[Fault]:
         """Only a whole body with inertia: else one E* of both tells all, and a target of shape sphere knows it."""
