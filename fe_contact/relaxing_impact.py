@@ -55,7 +55,8 @@ class Instant:
     """Striker and body at the end of a step: s, and in units of the solid depth, velocity and impulse.
 
     As under a rigid contact, to first order in the penalty's softness: ``displacement`` (2 N,) and the nodal forces
-    ``borne`` there, (2 N,); ``memory`` of the core's points and, as displacement, of the ``rim``; ``work`` by then.
+    ``borne`` there, (2 N,); ``memory`` of the core's points and, as displacement, of the ``rim`` and of how far the
+    ``datum`` came up; ``work`` along the depth by then.
     """
 
     time: float
@@ -69,6 +70,7 @@ class Instant:
     borne: Array
     memory: State
     rim: State
+    datum: State
     work: float = 0.0
     iterations: int = 0
 
@@ -146,7 +148,7 @@ class Marcher:
         core, none = self.body.body.core, Fading.over(self.law.network, 1.0)
         memory, rim = none.at_rest(4, *core.weight.shape), none.at_rest(self.body.body.rim.size)
         still, velocity = np.zeros(core.size), self.strike.velocity / self.solid.unit
-        return Instant(0.0, 0.0, velocity, 0.0, 0.0, 0.0, None, still, still, memory, rim)
+        return Instant(0.0, 0.0, velocity, 0.0, 0.0, 0.0, None, still, still, memory, rim, none.at_rest())
 
     def _time_left(self, instants: list[Instant]) -> float | None:
         """Until the contact ends, s, while the force falls; None before."""
@@ -182,6 +184,7 @@ class Marcher:
         force, (displacement, loaded) = found.rigid_force, found.rigid
         given = 0.5 * length * (here.force + force)
         borne = found.balance.encounter.body.forces(loaded, displacement)
+        moved, datum = displacement - here.displacement, self.body.body.datum
         return Instant(
             time=here.time + length,
             depth=depth,
@@ -194,7 +197,8 @@ class Marcher:
             borne=borne,
             memory=loaded.answer.state,
             rim=fading.onwards(here.rim, displacement[self.body.body.rim]),
-            work=here.work + 0.5 * float((here.borne + borne) @ (displacement - here.displacement)),
+            datum=fading.onwards(here.datum, np.asarray(datum @ displacement)),
+            work=here.work + 0.5 * float((here.borne + borne + (here.force + force) * datum) @ moved),
             iterations=here.iterations + found.iterations,
         )
 
@@ -242,17 +246,18 @@ class Marcher:
             radius=unit * np.array([one.radius for one in instants[1:]]),
             separated=separated,
             photograph=tuple,
-            energy=self._account(last, float(depth[-1]), speed),
+            energy=self._account(instants, float(depth[-1]), speed),
             end_spread=0.0,
             work=Work(len(instants) - 1, len(instants) - 1, last.iterations),
         )
 
-    def _account(self, last: Instant, depth: float, speed: float) -> dict[str, float]:
+    def _account(self, instants: list[Instant], depth: float, speed: float) -> dict[str, float]:
         """Terms in J; the penalty holds nothing in the end."""
-        strike, joule, found = self.strike, self.scale * self.solid.unit / self.solid.lead, last.found
+        strike, joule, last = self.strike, self.scale * self.solid.unit / self.solid.lead, instants[-1]
+        found = last.found
         assert found is not None  # no impact ends where it begins
         brought = 0.5 * strike.mass * strike.velocity**2 + strike.mass * strike.gravity * depth
-        stored = joule * self._stored(last)
+        stored = joule * (self._stored(last) - self._stored_below(instants))
         none = dict.fromkeys(("radiated", "numerical"), 0.0)
         out = 0.5 * strike.mass * speed**2
         known = {"in": brought, "out": out, "stored": stored, "viscous": joule * last.work - stored}
@@ -270,6 +275,16 @@ class Marcher:
             points = float(np.vdot(body.core.weight, square)) / (4.0 * law.sudden.shear)
             found += float(points + 0.5 * moved @ body.rest @ moved) / share
         return found
+
+    def _stored_below(self, instants: list[Instant]) -> float:
+        """What a datum's way up holds of that: far below it goes, as the network does, with the force alone."""
+        if not self.body.follows:
+            return 0.0
+        (peak, branches), network = max(instants, key=lambda one: one.force).datum, self.law.network
+        lasting, shares = network.relaxed / network.glassy, np.array(network.moduli) / network.glassy
+        stiffness = max(one.force for one in instants) / -(lasting * peak + branches.sum())
+        last, branches = instants[-1].datum
+        return float(0.5 * stiffness * (lasting * last**2 + (branches**2 / shares).sum()))
 
 
 def at_peak(scene: Scene, result: Result) -> tuple[Solid, Equilibrium]:
