@@ -70,7 +70,7 @@ class Instant:
     borne: Array
     memory: State
     rim: State
-    datum: State
+    datum: State = ()
     work: float = 0.0
     iterations: int = 0
 

@@ -319,7 +319,7 @@ def advanced(
     """
     iterations = 0
     if before is None:
-        before = _begun(encounter, depth, stiffness, state, np.zeros(encounter.skin.size) if start is None else start)
+        before = _begun(encounter, depth, stiffness, state, start)
         iterations = before.iterations
         if before.balance.depth == depth:
             return before
@@ -363,19 +363,24 @@ def _touching(before: Equilibrium, depth: float, widening: float) -> Points:
     return np.asarray((along >= wider * first) & (along <= wider * last))
 
 
-def _begun(encounter: Encounter, depth: float, stiffness: float, state: State, start: Array) -> Equilibrium:
-    """From a displacement (2 N,) to a depth, or to the part of it that can be reached at once. Raises EquilibriumLost."""
-    share = 1.0
+def _begun(
+    encounter: Encounter, depth: float, stiffness: float, state: State, start: Array | None = None
+) -> Equilibrium:
+    """From a displacement (2 N,), or from rest, to a depth, or to the part of it that can be reached at once.
+
+    Raises EquilibriumLost.
+    """
+    origin, share = np.zeros(encounter.skin.size) if start is None else start, 1.0
     while True:
         try:
-            return pressed_first(encounter, share * depth, stiffness, start, state)
+            return pressed_first(encounter, share * depth, stiffness, origin, state)
         except EquilibriumLost:
             share *= 0.5
             if share < LEAST_BEGUN:
                 raise
 
 
-def pressed_first(encounter: Encounter, depth: float, stiffness: float, start: Array, state: State) -> Equilibrium:
+def pressed_first(encounter: Encounter, depth: float, stiffness: float, start: Array, state: State = ()) -> Equilibrium:
     """From a displacement ``start`` (2 N,) far away: a stiff penalty at once would turn elements inside out."""
     iterations = 0
     for share in RAMP:

@@ -733,7 +733,8 @@ def test_who_is_in_haste_gives_up_where_no_whole_steps_lead_to_an_equilibrium(
 ) -> None:
     """Half the way is the better one then; else it is looked for by what lessens the energy, from where it began."""
     start, at_last = np.array([0.3]), object()
-    encounter: Any = SimpleNamespace(at=lambda place, *given: SimpleNamespace(displacement=place, energy=1.0))
+    placed = {"at": lambda place, *given: SimpleNamespace(displacement=place, energy=1.0), "follows": False}
+    encounter: Any = SimpleNamespace(**placed)
     monkeypatch.setattr(newton, "_hastened", lambda *given: None)
     monkeypatch.setattr(newton, "_descending", lambda here, *given: at_last if here.displacement is start else None)
     if hasty:
@@ -926,7 +927,7 @@ def test_the_deepest_depth_is_where_a_body_has_taken_up_what_the_striker_brings(
         tried.append(depth)
         inner = depth / unit
         return SimpleNamespace(
-            balance=SimpleNamespace(depth=inner, force=2.5 * c * unit**2.5 * inner**1.5, energy=c * depth**2.5)
+            balance=SimpleNamespace(depth=inner, force=2.5 * c * unit**2.5 * inner**1.5, taken=c * depth**2.5)
         )
 
     solid = SimpleNamespace(unit=unit, lead=lead, dimension=2, advanced=advanced)

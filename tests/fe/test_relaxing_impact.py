@@ -282,9 +282,10 @@ class OnSpring(Marcher):
     late: float = 0.0
 
     def _touch(self) -> Instant:
-        rest, still = Fading.over(self.law.network, 1.0).at_rest(1), np.zeros(1)
+        none, still = Fading.over(self.law.network, 1.0), np.zeros(1)
+        rest = none.at_rest(1)
         velocity = self.strike.velocity / self.solid.unit
-        return Instant(0.0, 0.0, velocity, 0.0, 0.0, 0.0, None, still, still, rest, rest)
+        return Instant(0.0, 0.0, velocity, 0.0, 0.0, 0.0, None, still, still, rest, rest, none.at_rest())
 
     def _equilibrium(self, here: Instant, depth: float, fading: Fading) -> Any:
         rigid = np.zeros(1), SimpleNamespace(answer=SimpleNamespace(state=here.memory))
@@ -299,7 +300,8 @@ class OnSpring(Marcher):
 
 def on_spring(strike: Strike, numerics: Numerics, unit: float, scale: float, late: float = 0.0) -> OnSpring:
     """A striker on k d^(3/2), of its units of length, m, and force, N, that begins ``late`` by a depth in them."""
-    encounter = SimpleNamespace(body=SimpleNamespace(rim=np.zeros(1, dtype=int)))
+    body = SimpleNamespace(rim=np.zeros(1, dtype=int), datum=np.zeros(1))
+    encounter = SimpleNamespace(body=body, follows=False)
     solid: Any = SimpleNamespace(unit=unit, lead=1.0, encounter=encounter)
     law = FadingLaw(Hyperelastic(YEOH, 1.0, 2.0), strike.relaxation, False)
     return OnSpring(strike, solid, law, numerics, scale, 1.5, late)
