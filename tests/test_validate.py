@@ -226,7 +226,7 @@ def test_an_effect_that_no_model_answers_is_told_with_its_reason() -> None:
     assert larger.headline({}).word == OPEN
     lost = MeasuredEffect("finite strain", "model.kinematics=finite", 0.1, reason="the body folds")
     assert larger.sentences({"ball": (lost,)}) == ["ball: finite strain is not measured: the body folds"]
-    assert larger.effects_of("polymer-half-plane") == (), "a cylinder on a half-plane has no larger model"
+    assert larger.effects_of("bar") == (), "a bar has no larger model"
 
 
 PAIRS = st.lists(st.tuples(st.floats(-10.0, 10.0), st.floats(0.0, 2.0)), min_size=2, max_size=60)

@@ -312,10 +312,10 @@ def advanced(
     state: State = (),
     start: Array | None = None,
 ) -> Equilibrium:
-    """From an equilibrium, or softly from a displacement ``start`` (2 N,), to another depth, by as many steps as it takes.
+    """From an equilibrium, or softly from a ``start`` (2 N,) or from rest, to another depth, by as many steps as it takes.
 
-    ``widening``: power of the depth that a contact is wide by, about; ``state``: what points remember meanwhile; no
-    ``start``: from rest. Raises EquilibriumLost.
+    ``widening``: power of the depth that a contact is wide by, about; ``state``: what points remember meanwhile. Raises
+    EquilibriumLost.
     """
     iterations = 0
     if before is None:

@@ -10,6 +10,7 @@ s_xx + s_yy = 4 Re phi ,  s_yy - s_xx + 2 i s_xy = 2 (conj(z) phi' + psi) ,
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from math import asinh, hypot, pi
 
 import numpy as np
@@ -88,9 +89,7 @@ def _buried_force(z: Complex, place: complex, nu: float) -> Potentials:
         z, -whole / own, whole / own**2, share * np.conj(whole) / own - whole * place.conjugate() / own**2
     )
     # With F*(z) = conj(F(conj z)), of phi and psi alone: the surface bears none where phi_2 = -(z phi* + psi*)' and ...
-    mirrored, first, second = (
-        sign * np.conj(whole) / image**power for sign, power in ((-1.0, 1), (1.0, 2), (-2.0, 3))
-    )
+    mirrored, first, second = (sign * np.conj(whole) / image**power for sign, power in ((-1.0, 1), (1.0, 2), (-2.0, 3)))
     psi = share * whole / image - np.conj(whole) * place / image**2
     psi_slope = -share * whole / image**2 + 2.0 * np.conj(whole) * place / image**3
     phi = -(mirrored + z * first + psi)
@@ -103,7 +102,7 @@ def _points(below: float) -> tuple[Complex, Array]:
     edges = sorted({0.0, *NEAR, *(share * below for share in BESIDE_DATUM)})
     while edges[-1] < FARTHEST * max(below, 1.0):
         edges.append(2.0 * edges[-1])
-    edges = [place for low, high in zip(edges, edges[1:], strict=False) for place in _doubling(low, high)] + edges[-1:]
+    edges = [place for low, high in pairwise(edges) for place in _doubling(low, high)] + edges[-1:]
     (share, weight), (turn, wide) = gauss(POINTS), gauss(ANGLES)
     low, long = np.array(edges[:-1]), np.diff(edges)
     distance, across = (low[:, None] + np.outer(long, share)).ravel(), np.outer(long, weight).ravel()

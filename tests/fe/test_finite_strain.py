@@ -157,6 +157,9 @@ def drawn(random: np.random.Generator, name: str) -> tuple[Shape, Target, float]
         return float(np.exp(random.uniform(np.log(low), np.log(high))))
 
     striker, _, base = name.partition(" ")
+    if base == "datum":
+        depth = between(0.002, 0.1)
+        return Cylinder(1.0, 1.0), HalfSpace(max(between(0.3, 100.0), 10.0 * depth)), depth
     if base in ("bonded", "sliding"):
         depth, width = between(0.004, 0.1), between(0.1, 6.0)
         shape: Shape = {"sphere": Sphere(1.0), "line": Cylinder(1.0, 1.0), "cone": Cone(between(1.0, 12.0))}[striker]
@@ -193,7 +196,7 @@ def measured(pressed: Indenter, depth: float) -> tuple[float, float]:
 @pytest.mark.parametrize(
     "name",
     ["sphere bonded", "sphere", "cone", "block", "ring", "o_ring", "washer", "sphere sliding", "line bonded",
-     "line sliding", "cone bonded", "cone sliding"],
+     "line sliding", "cone bonded", "cone sliding", "line datum"],
 )  # fmt: skip
 def test_what_the_ledger_says_of_large_strains_is_within_a_factor_of_three(
     name: str, campaign_size: Callable[..., int]

@@ -78,6 +78,7 @@ def pair(random: np.random.Generator, name: str) -> tuple[Indenter, float]:
         "cone, layer": (Cone(float(random.uniform(3.0, 15.0))), layer),
         "power": (PowerProfile(0.3, float(random.uniform(1.5, 4.0))), layer),
         "line": (Cylinder(1.0, 1.0), layer),
+        "line, datum": (Cylinder(1.0, 1.0), HalfSpace(float(random.uniform(10.0, 100.0)) * deepest)),
         "ring": (Cylinder(float(random.uniform(0.7, 0.95)), 1.0), Ring(1.0, deepest / 0.25)),
         "o_ring": (Punch(2.0), ORing(1.0, section)),
         "washer": (Punch(9.0), Washer(inner, inner + float(random.uniform(0.5, 2.0)), 1.0, base)),
@@ -88,7 +89,7 @@ def pair(random: np.random.Generator, name: str) -> tuple[Indenter, float]:
     return Indenter(shape, material, target, model=Model(kinematics="finite")), deepest
 
 
-PAIRS = ("washer", "block", "o_ring", "ring", "line", "cone", "cone, layer", "power")
+PAIRS = ("washer", "block", "o_ring", "ring", "line", "cone", "cone, layer", "power", "line, datum")
 
 
 def compare_with_finer(

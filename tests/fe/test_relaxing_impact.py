@@ -28,9 +28,12 @@ from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.relaxing import Fading, FadingLaw, Relaxing, doubled, green, second
 from fe_contact.steppers.steps import Strike
 from lumped import BadInput, Scene
-from lumped.materials import Relaxation
+from lumped.materials import Material, Relaxation
 from lumped.materials.energies.base import ENERGIES, energy_of, strained
+from lumped.scene.tables import Model
+from lumped.shapes.cylinder import Cylinder
 from lumped.shapes.prism import Prism
+from lumped.targets import HalfSpace
 
 NETWORK = Relaxation(1.0, (0.7, 1.3), (0.2, 3.0))
 YEOH = energy_of("yeoh")
@@ -199,6 +202,17 @@ def test_a_light_impact_is_that_of_small_strains() -> None:
     scene = Scene.load("polymer-sphere", {"striker.velocity": 2e-5, "target.material.C1": 7.2e4})
     coarse = plan(scene, {"elements_per_contact": 1.5, "order": 3, "penalty": 300.0, "far_radius": 10.0}).numerics
     is_that_of_small_strains(scene, coarse, tolerance=1e-3, close=4e-3, residual=1e-3)
+
+
+@pytest.mark.tenth
+def test_a_light_impact_below_a_datum_is_that_of_small_strains() -> None:
+    """Along the depth: of what the body takes up and keeps, what moves the datum is none."""
+    network = Relaxation(4e6, (6e6,), (2e-4,))
+    scene = Scene(Cylinder(0.01, 1.0), 0.1, 0.01, Material(network, 0.45), target=HalfSpace(0.03))
+    coarse = plan(scene, {"elements_per_contact": 2.0, "order": 3, "penalty": 300.0, "far_radius": 10.0}).numerics
+    is_that_of_small_strains(
+        replace(scene, model=Model(kinematics="finite")), coarse, tolerance=1e-3, close=4e-3, residual=1e-3
+    )
 
 
 def block_impact(scene: Scene) -> tuple[float, float]:
