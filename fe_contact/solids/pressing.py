@@ -312,7 +312,7 @@ def advanced(
     state: State = (),
     start: Array | None = None,
 ) -> Equilibrium:
-    """From an equilibrium, or softly from a ``start`` (2 N,) or from rest, to another depth, by as many steps as it takes.
+    """From an equilibrium, or softly from a ``start`` (2 N,) or from rest, to another depth, in as few steps as can be.
 
     ``widening``: power of the depth that a contact is wide by, about; ``state``: what points remember meanwhile. Raises
     EquilibriumLost.
