@@ -53,6 +53,7 @@ CORE = 0.5  # of the way from the contact to the end of the mesh strains may be 
 RAMP = (0.02, 0.2, 1.0)  # shares of the penalty with which a body is pressed for the first time
 FARTHEST = 2.0  # a depth over the one before it, beyond which another is put between, or under a tip another mesh
 LEAST_BEGUN = 0.05  # of a depth, that a body has to be pressed by from rest at once
+WIDER = (1.0, 1.3, 1.7)  # the mesh again where a contact outgrew it: small strains tell how wide it is to be
 WIDENING = 0.5  # power of the depth that a contact is wide by, under a sphere
 ITERATIONS = 40  # work: of Newton's method for the stretch across a block
 ROUNDING = 1e-13  # of that stretch
@@ -205,7 +206,12 @@ def press(
     with material_of(indenter.target.owner):
         if isinstance(indenter.shape, Block) and indenter.shape.uniform:
             return _pressed_evenly(indenter, indenter.shape, depth)
-        return _pressed_on_meshes(indenter, depth, radii, numerics, softer, counted)
+        for wider in WIDER[:-1]:
+            try:
+                return _pressed_on_meshes(indenter, depth, wider * radii, numerics, softer, counted)
+            except ContactTooWide:
+                continue
+        return _pressed_on_meshes(indenter, depth, WIDER[-1] * radii, numerics, softer, counted)
 
 
 def _pressed_on_meshes(

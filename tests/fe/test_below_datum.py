@@ -12,12 +12,14 @@ import numpy as np
 import pytest
 
 from fe_contact import run
+from fe_contact.errors import ContactTooWide
 from fe_contact.indentation import expected, indent, press, settings
 from fe_contact.large_strains import depth_reached
+from fe_contact.progress import uncounted
 from fe_contact.settings import Numerics
 from fe_contact.solids import newton
 from fe_contact.solids.newton import Equilibrium, balanced
-from fe_contact.solids.pressing import Solid
+from fe_contact.solids.pressing import Solid, _pressed_on_meshes
 from lumped import BadInput, NotReached, Scene
 from lumped.load_curves.half_plane import HalfPlane
 from lumped.load_curves.plane_contact import ParabolaProfile
@@ -191,3 +193,16 @@ def test_the_field_has_the_force_and_the_slope_of_the_closed_curve_of_a_parabola
     assert field.power * field.energy == pytest.approx(modulus * here.force * depth, rel=2e-3)
     assert field.power == pytest.approx(1.0 + here.stiffness * depth / here.force, rel=2e-3)
     assert math.isfinite(field.change(energy_of("yeoh")))
+
+
+def test_a_contact_that_outgrows_its_mesh_is_pressed_on_a_wider_one() -> None:
+    """Beside a near datum large strains widen it by more than small ones tell; meshes as wide from the first agree."""
+    pressed, depths = cylinder(1.0, nu=0.3), np.array([0.03, 0.1])
+    numerics = settings({"tolerance": 1e-2}, pressed.shape, True)
+    radii = expected(pressed, depths, numerics)
+    with pytest.raises(ContactTooWide):
+        _pressed_on_meshes(pressed.elastic(False), depths, radii, numerics, None, uncounted)
+    found = press(pressed.elastic(False), depths, radii, numerics)
+    at_once = press(pressed.elastic(False), depths, 1.5 * radii, numerics)
+    assert found.contact_radius[-1] > 1.15 * radii[-1]
+    assert found.force == pytest.approx(at_once.force, rel=2e-3)
