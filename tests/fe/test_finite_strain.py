@@ -159,7 +159,7 @@ def drawn(random: np.random.Generator, name: str) -> tuple[Shape, Target, float]
     striker, _, base = name.partition(" ")
     if base == "datum":
         depth = between(0.002, 0.1)
-        return Cylinder(1.0, 1.0), HalfSpace(max(between(0.3, 100.0), 10.0 * depth)), depth
+        return Cylinder(1.0, 1.0), HalfSpace(max(between(0.3, 100.0), 4.0 * math.sqrt(depth))), depth
     if base in ("bonded", "sliding"):
         depth, width = between(0.004, 0.1), between(0.1, 6.0)
         shape: Shape = {"sphere": Sphere(1.0), "line": Cylinder(1.0, 1.0), "cone": Cone(between(1.0, 12.0))}[striker]
