@@ -42,22 +42,22 @@ class ContactNotSettled(NotReached):
     """A contact problem did not converge, or its edge left the mesh at every scale; ``enforced``: what helps it."""
 
     def __init__(self, time: float, enforced: str = "a lower numerics.penalty") -> None:
-        super().__init__(f"contact not found at t = {time:.6g} s; cure: a higher numerics.steps, or {enforced}")
+        super().__init__(f"contact not found at t = {time:.6g} s", f"a higher numerics.steps, or {enforced}")
 
 
 class FlowNotSettled(NotReached):
     """The plastic flow of a step was not found."""
 
     def __init__(self, time: float) -> None:
-        cure = "cure: raise numerics.steps, or a larger target.material.hardening_modulus"
-        super().__init__(f"plastic flow not found at t = {time:.6g} s; {cure}")
+        cure = "raise numerics.steps, or a larger target.material.hardening_modulus"
+        super().__init__(f"plastic flow not found at t = {time:.6g} s", cure)
 
 
 class ContactLost(NotReached):
     """The step would end after separation: a march of small strains retries with a shorter one."""
 
     def __init__(self, time: float) -> None:
-        super().__init__(f"no contact after t = {time:.6g} s; cure: raise numerics.steps")
+        super().__init__(f"no contact after t = {time:.6g} s", "raise numerics.steps")
 
 
 class MemoryTooSmall(NotReached):
@@ -68,8 +68,8 @@ class MemoryTooSmall(NotReached):
 
     def __init__(self, radius: float) -> None:
         self.radius = radius
-        cure = "cure: a lower striker.velocity or striker.mass, or a stiffer material"
-        super().__init__(f"contact radius {radius:.6g} m exceeds the planned one; {cure}")
+        cure = "a lower striker.velocity or striker.mass, or a stiffer material"
+        super().__init__(f"contact radius {radius:.6g} m exceeds the planned one", cure)
 
 
 class RatioNotKnown(NotReached):
@@ -78,23 +78,23 @@ class RatioNotKnown(NotReached):
     def __init__(self, ratio: float, low: float, high: float) -> None:
         known = f"the body is known from {low:.3g} to {high:.3g}"
         short, long = ("another motion.end_time, or fewer", "an earlier motion.end_time, or more")
-        cure = f"cure: {short if ratio > high else long} numerics.steps"
-        super().__init__(f"a step in which the shear modulus is {ratio:.3g} of the bulk modulus; {known}; {cure}")
+        cure = f"{short if ratio > high else long} numerics.steps"
+        super().__init__(f"a step in which the shear modulus is {ratio:.3g} of the bulk modulus; {known}", cure)
 
 
 class TooManySteps(NotReached):
     """The march used up its steps before the contact ended."""
 
     def __init__(self, steps: int, time: float, cure: str = "an earlier motion.end_time") -> None:
-        super().__init__(f"{steps} steps reached only t = {time:.6g} s; cure: {cure}")
+        super().__init__(f"{steps} steps reached only t = {time:.6g} s", cure)
 
 
 class ContactTooBrief(NotReached):
     """The contact ended within so few steps that nothing can be read of it."""
 
     def __init__(self, steps: int, time: float) -> None:
-        cure = "cure: --method ting where it answers, more numerics.steps, or less viscosity"
-        super().__init__(f"the contact was over after {steps} steps, at t = {time:.3g} s, sooner than expected; {cure}")
+        cure = "--method ting where it answers, more numerics.steps, or less viscosity"
+        super().__init__(f"the contact was over after {steps} steps, at t = {time:.3g} s, sooner than expected", cure)
 
 
 FINER_STEPS = "an earlier motion.end_time, or more numerics.steps"  # cure where they set how many a contact may take
@@ -104,15 +104,14 @@ class IndentationNotSettled(NotReached):
     """The contact problem at one depth did not settle."""
 
     def __init__(self, depth: float, cure: str = "a lower numerics.penalty") -> None:
-        super().__init__(f"contact at depth {depth:.3g} m did not settle; cure: {cure}")
+        super().__init__(f"contact at depth {depth:.3g} m did not settle", cure)
 
 
 class ContactTooWide(NotReached):
     """The contact at one depth left the part of the mesh that is fine enough for it."""
 
     def __init__(self, depth: float) -> None:
-        reason = f"contact at depth {depth:.3g} m leaves the fine mesh"
-        super().__init__(f"{reason}; cure: smaller depths")
+        super().__init__(f"contact at depth {depth:.3g} m leaves the fine mesh", "smaller depths")
 
 
 class BodyTooThin(NotReached):
@@ -120,7 +119,7 @@ class BodyTooThin(NotReached):
 
     def __init__(self, width: float, thickness: float, most: float) -> None:
         reason = f"a fine mesh {width:.2g} m wide on a body {thickness:g} m thick"
-        super().__init__(f"{reason}: accepted up to {most:g} times as wide; cure: smaller depths, or a thicker body")
+        super().__init__(f"{reason}: accepted up to {most:g} times as wide", "smaller depths, or a thicker body")
 
 
 class BodyTooFine(NotReached):
@@ -128,7 +127,7 @@ class BodyTooFine(NotReached):
 
     def __init__(self, reason: str, accepted: str) -> None:
         keys = "lower numerics.elements_per_contact, numerics.order or numerics.far_radius, a larger tolerance"
-        super().__init__(f"{reason}: {accepted}; cure: {keys}, or a body thicker beside its contact")
+        super().__init__(f"{reason}: {accepted}", f"{keys}, or a body thicker beside its contact")
 
 
 class SolidTooLarge(NotReached):
@@ -136,15 +135,15 @@ class SolidTooLarge(NotReached):
 
     def __init__(self, entries: int, most: int) -> None:
         reason = f"a body of {entries:.2g} matrix entries in three dimensions: accepted up to {most:.2g}"
-        super().__init__(f"{reason}; cure: a shorter striker, or a body thicker beside its contact")
+        super().__init__(reason, "a shorter striker, or a body thicker beside its contact")
 
 
 class WavesTooDear(NotReached):
     """An impact with waves that would take many minutes or gigabytes."""
 
     def __init__(self, cost: str, accepted: str) -> None:
-        cure = "cure: a larger tolerance, lower numerics.elements_per_contact or numerics.steps, fewer motion.impacts"
-        super().__init__(f"{cost}: accepted up to {accepted}; {cure}")
+        cure = "a larger tolerance, lower numerics.elements_per_contact or numerics.steps, fewer motion.impacts"
+        super().__init__(f"{cost}: accepted up to {accepted}", cure)
 
 
 class RodTooLong(NotReached):
@@ -152,16 +151,16 @@ class RodTooLong(NotReached):
 
     def __init__(self, transit: float, elements: int, most: int) -> None:
         reason = f"a rod that waves cross in {transit:.3g} s needs {elements} elements for so short a contact"
-        cure = "cure: a shorter one with an absorbing end, if no echo returns within the contact"
-        super().__init__(f"{reason}: accepted up to {most}; {cure}")
+        cure = "a shorter one with an absorbing end, if no echo returns within the contact"
+        super().__init__(f"{reason}: accepted up to {most}", cure)
 
 
 class MotionUnbounded(NotReached):
     """A time integrator lost its stability."""
 
     def __init__(self, time: float) -> None:
-        cure = "cure: raise numerics.steps, or another numerics.scheme: staged, generalised_alpha"
-        super().__init__(f"the motion grows without bound at t = {time:.6g} s; {cure}")
+        cure = "raise numerics.steps, or another numerics.scheme: staged, generalised_alpha"
+        super().__init__(f"the motion grows without bound at t = {time:.6g} s", cure)
 
 
 class WorkerLost(NotReached):
@@ -170,7 +169,7 @@ class WorkerLost(NotReached):
     def __init__(self) -> None:
         reason = "a process of the study was killed, as systems do for want of memory"
         super().__init__(
-            f"{reason}; cure: free some, then the same command again (sweep: with --resume); rows measured are kept"
+            reason, "free some, then the same command again (sweep: with --resume); rows measured are kept"
         )
 
 

@@ -90,7 +90,7 @@ def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
             break
         asked *= AIM / excess
     if best is None:
-        raise NotReached(f"the striker goes deeper than {deepest:.3g} m; cure: a lower striker.velocity or .mass")
+        raise NotReached(f"the striker goes deeper than {deepest:.3g} m", "a lower striker.velocity or .mass")
     return best
 
 

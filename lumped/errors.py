@@ -103,9 +103,13 @@ class PackageMissing(FeContactError):
 
 
 class NotReached(FeContactError):
-    """The tolerance was not reached, or a solve did not converge."""
+    """The tolerance was not reached, or a solve did not converge: the ``reason``, and the ``cure`` where one is known."""
 
     exit_code = 3
+
+    def __init__(self, reason: str, cure: str = "") -> None:
+        self.reason, self.cure = reason, cure
+        super().__init__(f"{reason}; cure: {cure}" if cure else reason)
 
 
 class TooManySteps(NotReached):

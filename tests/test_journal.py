@@ -176,6 +176,11 @@ def test_a_named_failure_comes_out_of_a_process_as_it_went_in() -> None:
         assert type(came[name]) is call.func
         assert str(came[name]) == str(call())
     assert came["input"].faults == faults
+    lost = came["fe"]
+    assert isinstance(lost, ContactNotSettled)
+    assert str(lost) == f"{lost.reason}; cure: {lost.cure}"
+    assert "numerics.steps" in lost.cure
+    assert "cure" not in lost.reason
 
 
 # studies that are killed

@@ -24,7 +24,6 @@ WIDER = 1.5  # the mesh again where the contact outgrew it
 DOMINANT = 0.5  # causes above this share of the largest one, or of the tolerance, are refined together
 FACTOR = {"mesh": 1.5, "penalty": 4, "time_step": 2, "far_field": 2}  # by which they are
 AIM = 0.9  # of the tolerance: predictions err too
-CURE = "; cure: "  # what stands between a reason and its cure
 
 Found = TypeVar("Found")
 
@@ -74,7 +73,7 @@ def refine(way: Way[Found], numerics: Numerics) -> tuple[Found, str]:
         except NotReached as failure:
             if found is None:
                 raise
-            refused = f"with finer settings {str(failure).partition(CURE)[0]}"  # its cure is for settings of one's own
+            refused = f"with finer settings {failure.reason}"  # its cure is for settings of one's own
             break
         finer, refused = way.finer(found)
         if finer is None or refused:

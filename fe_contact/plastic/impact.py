@@ -66,7 +66,7 @@ class HeldDown(NotReached):
 
     def __init__(self, depth: float) -> None:
         reason = f"the weight holds the striker, which went {depth:.3g} m deep"
-        super().__init__(f"{reason}; cure: a higher striker.velocity, or model.gravity = 0")
+        super().__init__(reason, "a higher striker.velocity, or model.gravity = 0")
 
 
 @dataclass(frozen=True, eq=False)

@@ -39,25 +39,24 @@ class PlasticFlowLost(NotReached):
     """No equilibrium was found at one depth."""
 
     def __init__(self, depth: float) -> None:
-        cure = "cure: raise numerics.steps, lower numerics.penalty, or a larger target.material.hardening_modulus"
-        super().__init__(f"plastic flow at depth {depth:.3g} m did not settle; {cure}")
+        cure = "raise numerics.steps, lower numerics.penalty, or a larger target.material.hardening_modulus"
+        super().__init__(f"plastic flow at depth {depth:.3g} m did not settle", cure)
 
 
 class PlasticZoneWide(NotReached):
     """The body flows further from the contact than it may."""
 
     def __init__(self, when: str, core: float) -> None:
-        cure = "cure: a lower striker.velocity or mass, or a higher target.material.yield_strength"
-        reason = f"at {when} flow reaches {GUARD * core:.2g} contact radii, further than is meshed"
-        super().__init__(f"{reason}; {cure}")
+        cure = "a lower striker.velocity or mass, or a higher target.material.yield_strength"
+        super().__init__(f"at {when} flow reaches {GUARD * core:.2g} contact radii, further than is meshed", cure)
 
 
 class PlasticFlowSlow(NotReached):
     """More guesses were taken than there is work for."""
 
     def __init__(self, depth: float, most: int) -> None:
-        cure = "cure: a lower striker.velocity or mass, or a larger target.material.hardening_modulus"
-        super().__init__(f"plastic flow takes more than {most} guesses up to depth {depth:.3g} m; {cure}")
+        cure = "a lower striker.velocity or mass, or a larger target.material.hardening_modulus"
+        super().__init__(f"plastic flow takes more than {most} guesses up to depth {depth:.3g} m", cure)
 
 
 class Station(NamedTuple):

@@ -39,8 +39,7 @@ class EquilibriumLost(NotReached):
     """
 
     def __init__(self, reason: str, owner: str = "target") -> None:
-        super().__init__(f"{reason}; cure: smaller depths, or another {owner}.material.hyperelastic")
-        self.reason = reason
+        super().__init__(reason, f"smaller depths, or another {owner}.material.hyperelastic")
 
     def of(self, owner: str) -> EquilibriumLost:
         """The same of the material in another table."""

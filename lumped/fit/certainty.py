@@ -154,9 +154,7 @@ class Surroundings:
         sides = [(place, state) for place, state in (self._aside(i, sign * STEP) for sign in (-1.0, 1.0))]
         (below, before), (above, after) = sides
         if above == below:
-            raise NotReached(
-                f"no law has another {name} than {self.values[name]:.6g}; cure: hold it, or free another one"
-            )
+            raise NotReached(f"no law has another {name} than {self.values[name]:.6g}", "hold it, or free another one")
         return np.asarray((after - before) / (above - below))
 
     def _aside(self, i: int, step: float) -> tuple[float, Array]:

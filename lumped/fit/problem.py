@@ -105,7 +105,8 @@ class FitProblem:
             place, off = there, off_there
         raise NotReached(
             f"no {name} gives the measured peak, {self.measured.peak:.6g} N: at {math.exp(place):.6g} it is "
-            f"{100.0 * math.expm1(off):+.3g} % off; cure: free another parameter, or fit without holding the peak"
+            f"{100.0 * math.expm1(off):+.3g} % off",
+            "free another parameter, or fit without holding the peak",
         )
 
 

@@ -145,16 +145,18 @@ def best(problem: FitProblem) -> Found:
         if len(ended) == FOLLOWED or (ended is near and not problem.measured.systematic(found.error)):
             break
     if not near:
-        raise NotReached(_no_end(", ".join(problem.space.free), len(begun), bool(far)))
+        raise _no_end(", ".join(problem.space.free), len(begun), bool(far))
     return min(near, key=lambda found: found.norm)
 
 
-def _no_end(names: str, begun: int, far: bool) -> str:
+def _no_end(names: str, begun: int, far: bool) -> NotReached:
     """Why no search is an answer, and what to do."""
     if far:
         reason = f"searches of {names} end farther from the curve than no force at all"
-        return f"{reason}; cure: other free parameters, as E0 of a material, or a curve of these bodies"
-    return f"no search of {names} converged from {begun} starts; cure: fewer free parameters, or bounds for them"
+        return NotReached(reason, "other free parameters, as E0 of a material, or a curve of these bodies")
+    return NotReached(
+        f"no search of {names} converged from {begun} starts", "fewer free parameters, or bounds for them"
+    )
 
 
 def _begun(problem: FitProblem) -> list[Found]:

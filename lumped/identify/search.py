@@ -105,7 +105,7 @@ def _most_likely(histories: Histories, corner: float | None) -> tuple[Histories,
     """
     starts = _starts(histories)
     if not starts:
-        raise NotReached("no impact of the scene is near the curves; cure: nearer values in the scene file")
+        raise NotReached("no impact of the scene is near the curves", "nearer values in the scene file")
     if names := untold(histories, starts):
         reason = f"the force of this scene tells only a combination of {', '.join(names)}"
         raise BadInput(Fault(FREE, "", f"{reason}; accepted: one of them held, or a geometry that tells them apart"))
@@ -261,7 +261,7 @@ def correct(histories: Histories, valleys: Sequence[Valley], corner: float | Non
             told = _told(histories, valleys, there, found, bars, runs * len(there.samples))
             return Corrected(there, found, told)
     reason = f"the parameters still move after {ROUNDS} rounds of reference histories"
-    raise NotReached(f"{reason}; cure: fewer free keys, or a curve that tells them better")
+    raise NotReached(reason, "fewer free keys, or a curve that tells them better")
 
 
 def _round(

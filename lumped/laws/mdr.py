@@ -102,7 +102,7 @@ class SpringRow:
                 if meets(quantities, tolerance) or (known and _stalled(widest)):
                     break
         if answer is None:
-            raise NotReached("finer and coarser steps of the spring row end differently; cure: a later motion.end_time")
+            raise NotReached("finer and coarser steps of the spring row end differently", "a later motion.end_time")
         work = {"steps": steps, "springs": levels[-1].approach.shape[1]}
         numerics = {"levels": len(levels), "parts": parts}
         return assemble(self.name, scene, tolerance, answer, quantities, force_error, clock, numerics, work)

@@ -181,8 +181,8 @@ class TabulatedCurve(LoadCurve):
         for panels in range(1, len(self.edges)):
             if _start(self, panels)[0][-1] >= math.log(depth):
                 return panels
-        reason = f"the contact grows beyond {self.edges[-1]:g} m; cure: a smaller depth, a lower velocity"
-        raise NotReached(f"the load curve at a depth of {depth:g} m: {reason}")
+        reason = f"the contact grows beyond {self.edges[-1]:g} m"
+        raise NotReached(f"the load curve at a depth of {depth:g} m: {reason}", "a smaller depth, a lower velocity")
 
     def _at(self, radius: Array, panels: int) -> TabulatedState:
         edges = np.array(self.edges[: panels + 1])

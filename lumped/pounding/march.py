@@ -148,9 +148,7 @@ class FrameMarch:
             at = following
             if at.time >= until:
                 return at, length
-        raise NotReached(
-            f"{MOST_STEPS} steps between {until:.6g} s and the row before; cure: an earlier motion.end_time"
-        )
+        raise NotReached(f"{MOST_STEPS} steps between {until:.6g} s and the row before", "an earlier motion.end_time")
 
     def _free(self, at: FramesAt) -> Array:
         return self.rules.flow.series(at.state, self.ground.series(at.time, self.rules.flow.unit, TERMS))

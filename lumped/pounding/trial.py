@@ -150,7 +150,7 @@ class FrameTrial:
             else:
                 length = step.length * step.nodes.again(rough)
             proposed = length
-        raise NotReached(f"no step from {self.at.time:.6g} s on converges; cure: a law less stiff")
+        raise NotReached(f"no step from {self.at.time:.6g} s on converges", "a law less stiff")
 
     def _roughness(self, step: FrameStep) -> Array:
         """What the last Legendre terms of the forces are worth in rates over the step, m/s, of the active gaps."""

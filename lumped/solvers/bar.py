@@ -135,7 +135,7 @@ def bounces(
     time, closed, parted = 0.0, False, 0
     while time < end and parted < contacts:
         if len(pieces) > MOST_PIECES:
-            raise NotReached(f"bar: more than {MOST_PIECES} waves before t = {time:.6g} s; cure: an earlier end")
+            raise NotReached(f"bar: more than {MOST_PIECES} waves before t = {time:.6g} s", "an earlier end")
         step_done()
         value, slope, until = _echo(pieces, time - bar.echo, time)
         until += bar.echo

@@ -298,7 +298,7 @@ def _found(shrinking: Shrinking, guess: float) -> Attempt | None:
         if further - h <= CLOSE * h:
             return tried
         low, left, h = h, tried.pull, min(WIDER * h, further)
-    raise NotReached(f"the springs at the edge did not leave after {shrinking.now.time:.6g} s; cure: another --method")
+    raise NotReached(f"the springs at the edge did not leave after {shrinking.now.time:.6g} s", "another --method")
 
 
 def _released(shrinking: Shrinking, low: float, at_low: float, beyond: Attempt) -> Attempt:

@@ -255,7 +255,7 @@ class Nest:
 
     def _level(self, track: RowTrack, times: list[float], steps: int) -> Level:
         if track.end is End.SECOND_APPROACH and track.rebound:
-            raise NotReached("steps of the spring row finer than the first ones see its edge turn; cure: --method ting")
+            raise NotReached("steps of the spring row finer than the first ones see its edge turn", "--method ting")
         steps += len(track.rebound) + len(track.beyond)
         outward = [*track.rebound[:-1], *track.beyond] if track.beyond else track.rebound
         whole = track if self.cut is None else rebound(self._approach(times, self.cut), self.cut)
