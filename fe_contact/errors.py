@@ -41,7 +41,7 @@ def _lengths(scene: Scene | Indenter) -> str:
 class ContactNotSettled(NotReached):
     """A contact problem did not converge, or its edge left the mesh at every scale; ``enforced``: what helps it."""
 
-    def __init__(self, time: float, enforced: str = "a lower numerics.penalty") -> None:
+    def __init__(self, time: float, enforced: str) -> None:
         super().__init__(f"contact not found at t = {time:.6g} s", f"a higher numerics.steps, or {enforced}")
 
 

@@ -103,7 +103,7 @@ class PackageMissing(FeContactError):
 
 
 class NotReached(FeContactError):
-    """The tolerance was not reached, or a solve did not converge: the ``reason``, and the ``cure`` where one is known."""
+    """The tolerance was not reached, or a solve did not converge: the ``reason``, and the ``cure`` if one is known."""
 
     exit_code = 3
 

@@ -169,7 +169,7 @@ def test_an_answer_that_cannot_be_sent_is_not_waited_for() -> None:
 
 def test_a_named_failure_comes_out_of_a_process_as_it_went_in() -> None:
     faults = (Fault("scene.toml", "striker.mass", "missing"), Fault("scene.toml", "target", "missing"))
-    sent = {"fe": partial(ContactNotSettled, 0.5), "input": partial(BadInput, faults)}
+    sent = {"fe": partial(ContactNotSettled, 0.5, "a lower numerics.penalty"), "input": partial(BadInput, faults)}
     sent |= {"mesh": partial(GmshMissing, "no libGLU")}
     came = dict(measured(sent, 2))
     for name, call in sent.items():

@@ -113,20 +113,23 @@ class _Marcher:
                 raise TooManySteps(len(steps), states[-1].time, FINER_STEPS)
             left = self._time_left(steps)
             predicted.append(states[-1].time + (left or 0.0))
-            step = None
+            step, lost = None, None
             if left is None or left > self.shortest:
                 try:
                     step = self._advance(states[-1], steps, left)
                 except FAILURES as failure:
                     if not _ends(failure, steps):
                         raise
+                    lost = failure
                     if isinstance(failure, ContactLost):
                         left = min(left or 0.0, self.shortest)
                     else:  # too faint to be found: its end lies as far as the trend says, or within a step's length
                         unseen = left or steps[-1].length
             if step is None:
+                if lost is not None and states[-1].velocity > resting:
+                    raise lost  # a striker that still goes deeper has not left
                 separated = states[-1].velocity < -resting
-                states += self._flight(states[-1], left or 0.0) if separated else self._rest(states[-1], resting)
+                states += self._flight(states[-1], left or 0.0) if separated else self._rest(states[-1])
                 break
             self.counted(1.0)
             spent.append(Spent.of(self.stepper, states[-1], step))
@@ -191,13 +194,11 @@ class _Marcher:
         depth = state.depth + left * (state.velocity + 0.5 * pull)
         return [state._replace(time=state.time + left, depth=depth, velocity=state.velocity + pull)]
 
-    def _rest(self, state: State, resting: float) -> list[State]:
-        """A striker that a fluid has stopped, up to the end time; raises where it still moves, as on any other body."""
-        strike = self.strike
-        if state.velocity > resting:
-            raise ContactNotSettled(state.time)
-        rows = math.ceil(0.5 * math.log(strike.end_time / state.time) / math.log1p(REST_GROWTH))
-        times = np.geomspace(state.time, strike.end_time, rows + 1)[1:].tolist()
+    def _rest(self, state: State) -> list[State]:
+        """A striker that a fluid has stopped, up to the end time."""
+        end = self.strike.end_time
+        rows = math.ceil(0.5 * math.log(end / state.time) / math.log1p(REST_GROWTH))
+        times = np.geomspace(state.time, end, rows + 1)[1:].tolist()
         return [state._replace(time=time) for time in times]
 
 

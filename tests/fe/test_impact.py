@@ -238,7 +238,7 @@ def test_what_does_not_converge_raises_and_returns_nothing(
         marched(strike, settings_of(strike))
 
 
-@pytest.mark.parametrize("failure", [ContactNotSettled(0.0), MemoryTooSmall(1.0)])
+@pytest.mark.parametrize("failure", [ContactNotSettled(0.0, "a lower numerics.penalty"), MemoryTooSmall(1.0)])
 def test_a_contact_too_faint_to_be_found_ends_within_its_bar(
     failure: Exception, monkeypatch: pytest.MonkeyPatch, hertz_strike: Strikes, settings_of: Settings
 ) -> None:
