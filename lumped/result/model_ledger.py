@@ -137,7 +137,7 @@ def ledger_at_rest(indenter: Indenter, peak: Peak) -> tuple[LedgerEntry, ...]:
     """The same of a slow indentation at its deepest, which has neither inertia nor time."""
     shape, target = indenter.shape, indenter.target
     entries = [strained_much(indenter, indenter.model, peak)]
-    if indenter.material.yield_strength is not None:
+    if any(material.yield_strength is not None for _, material in indenter.geometry.yielding):
         entries.append(plasticity(indenter, indenter.model, peak))
     if target.fixed_radius(shape) is None:
         entries.append(profile(shape, indenter.model, peak))
@@ -452,19 +452,21 @@ def plasticity(scene: Scene | Indenter, model: Model, peak: Peak, struck: bool =
     """At the same depth F = F_Hertz/(1 + 0.047 ln^2 w), w the depth over that of first yield; ``struck``: half of it.
 
     What finite elements find without hardening at nu = 0.3, to a sixth for w = 1.5 to 30; Jackson and Green 2005 (doi
-    10.1115/1.1866166) to a tenth up to w = 100. A rim yields before; of two bodies the one that does so first counts.
+    10.1115/1.1866166) to a tenth up to w = 100. A rim yields before; of two bodies the one that does so first counts:
+    where one has no yield strength, at least the other.
     """
     effect, geometry = "plasticity", scene.geometry
     shape, target = geometry.shape, geometry.target
     if model.plasticity:
         return LedgerEntry(effect, "included", 0.0)
-    ratios = list[tuple[float, Material]]()
+    ratios, needs = list[tuple[float, Material]](), list[str]()
     for part, material in reversed(geometry.yielding):
         if material.yield_strength is None:
-            return LedgerEntry(effect, "neglected", None, f"needs {part}.material.yield_strength")
+            needs.append(f"needs {part}.material.yield_strength")
+            continue
         stress = target.mises(shape, material.nu, peak.force, peak.contact_radius) if peak.contact_radius else 0.0
         ratios.append((stress / material.yield_strength, material))
-    over, material = max(ratios, key=lambda one: one[0])
+    over, material = max(ratios, key=lambda one: one[0], default=(0.0, geometry.material))
     if target.sides(shape):
         change = yielded_alike(over, material, target.sides(shape) == "free", struck)
     else:
@@ -472,7 +474,11 @@ def plasticity(scene: Scene | Indenter, model: Model, peak: Peak, struck: bool =
         if target.fixed_radius(shape) is not None:
             softer += RIM * min(over, 1.0) ** 2
         change = (IN_AN_IMPACT if struck else 1.0) * softer / (1.0 + softer)
+    if needs and not change:
+        return LedgerEntry(effect, "neglected", None, needs[0])
     note = f"von Mises finds {over:.3g} Y where it is elastic"
+    if needs:
+        return LedgerEntry(effect, "neglected", change, f"{note}; {needs[0]}", spread=(-1.0, -change))
     impacts = scene.motion.impacts if isinstance(scene, Scene) else 1
     refused = plasticity_faults("", replace(model, plasticity=True), scene.geometry, impacts)
     if refused:

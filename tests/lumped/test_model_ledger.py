@@ -221,13 +221,29 @@ def _bilinear(young: float, strength: float, tangent: float) -> Callable[[float]
 
 
 def test_of_two_bodies_the_softer_one_yields() -> None:
-    """And what one of them yields at is not known without the other's."""
+    """Where one's strength is not known, as much as the other at least, which is nothing where that stays elastic."""
     scene, peak = Scene.load("two-spheres", {"target.material.yield_strength": 2e4}), Peak(1.0, 1e-4, 1e-3, 1e-2)
-    (unknown,) = [one for one in model_ledger(scene, peak) if one.effect == "plasticity"]
-    assert unknown.note == "needs striker.material.yield_strength"
+    hard = scene.changed({"target.material.yield_strength": 1e9})
+    unknown, least = (one for pair in (hard, scene) for one in model_ledger(pair, peak) if one.effect == "plasticity")
+    assert unknown == LedgerEntry("plasticity", "neglected", None, "needs striker.material.yield_strength")
+    both = scene.changed({"striker.material.yield_strength": 1e9})
+    (known,) = [one for one in model_ledger(both, peak) if one.effect == "plasticity"]
+    assert least.estimate == known.estimate
+    assert least.verdict(0.01).startswith(ABOVE)
+    assert least.verdict(0.99) == f"{OPEN}: {least.note}"
+    assert least.note.endswith("; needs striker.material.yield_strength")
+
     pairs = [scene.changed({"striker.material.yield_strength": one}) for one in (1e4, 4e4, 8e4)]
     alone = [one.estimate or 0.0 for pair in pairs for one in model_ledger(pair, peak) if one.effect == "plasticity"]
     assert alone[0] > alone[1] == alone[2] > 0.0
+
+
+@pytest.mark.parametrize("part", ["striker", "target"])
+def test_of_two_bodies_pressed_slowly_it_is_told_whichever_has_a_yield_strength(part: str) -> None:
+    pressed = Indenter.load("two-spheres", {f"{part}.material.yield_strength": 2e4})
+    (found,) = [one for one in ledger_at_rest(pressed, Peak(1.0, 1e-4, 1e-3, 1e-2)) if one.effect == "plasticity"]
+    assert found.estimate is not None
+    assert found.estimate > 0.0
 
 
 def test_adhesion_and_strain_are_simple_ratios() -> None:
