@@ -112,7 +112,7 @@ def depth_reached(scene: Scene) -> float:
     depth, reached = BEGUN * small.peak_depth, None
     for _ in range(ROUNDS):
         stiffness = numerics.penalty * solid.unit / radius
-        with material_of(indenter.target.owner):
+        with material_of(indenter):
             reached = solid.advanced(reached, depth, stiffness)
         balance = reached.balance
         brought = 0.5 * scene.reduced_mass * scene.velocity**2 + scene.reduced_mass * scene.gravity * depth
@@ -129,7 +129,7 @@ def at_peak(scene: Scene, result: Result) -> tuple[Solid, Equilibrium]:
     radius, given = float(result.history.contact_radius.max()), {key: result.numerics[key] for key in KEPT}
     numerics = settings(given, indenter.shape, large=True)
     solid = Solid.of(indenter, np.array([radius]), numerics)
-    with material_of(scene.target.owner):
+    with material_of(scene):
         return solid, solid.advanced(None, depth, numerics.penalty * solid.unit / radius)
 
 

@@ -289,7 +289,7 @@ class Marcher:
 
 def at_peak(scene: Scene, result: Result) -> tuple[Solid, Equilibrium]:
     """The body of a result with its settings, in the step in which the force peaks. Raises NotReached."""
-    with material_of(scene.target.owner):
+    with material_of(scene):
         marcher = Marcher.of(scene, Numerics(**result.numerics))
         return marcher.solid, marcher.at_peak()
 
@@ -348,7 +348,7 @@ class RelaxingStrikes:
 
     def _run(self, numerics: Numerics) -> March:
         message = f"{numerics.elements_per_contact:.3g} elements along the contact radius, {numerics.steps} steps"
-        with material_of(self.scene.target.owner):
+        with material_of(self.scene):
             march = Marcher.of(self.scene, numerics).march(Count.of(self.progress, message, numerics.steps))
         if not np.all(np.isfinite(march.radius)):
             raise MemoryTooSmall(numerics.contact_radius)

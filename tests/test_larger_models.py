@@ -129,3 +129,30 @@ def test_plan_measures_where_asked(capsys: pytest.CaptureFixture[str]) -> None:
     assert low - finite["error"] <= finite["change"] <= high + finite["error"]
     assert found["setting"] == "target.material.constant=bulk"
     assert found["change"] == pytest.approx(-found["estimate"], rel=0.2)
+
+
+STEEP = """
+name = "steep"
+striker = { shape = "cone", angle = 38.0, mass = 0.05, velocity = 0.03 }
+target.shape = "layer"
+target.thickness = 3e-3
+target.base = "bonded"
+target.material = { law = "elastic", E = 6e5, nu = 0.3, hyperelastic = "neo_hooke" }
+"""
+
+
+def test_large_strains_without_an_equilibrium_are_left_out_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Under a steep tip the surface folds, however shallow the contact: the scene's own model answers."""
+    (tmp_path / "steep.toml").write_text(STEEP, encoding="utf-8")
+    words = ["run", str(tmp_path / "steep.toml"), "--model", "sufficient", "--tolerance", "1e-2", "--quiet"]
+    assert main([*words, "--out", str(tmp_path / "it")]) == 0
+    (line,) = [one for one in capsys.readouterr().out.splitlines() if "finite strain is left out" in one]
+    assert "the model is the scene's own" in line
+    assert "of the peak force, and cannot be taken in: no equilibrium" in line
+    assert line.endswith("cure: a blunter striker, or another target.material.hyperelastic")
+    found = json.loads((tmp_path / "it" / "result.json").read_text())
+    assert found["converged"]
+    assert not found["model_sufficient"]
+    assert found["model"]["kinematics"] == "small"

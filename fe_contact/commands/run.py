@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
-from lumped.errors import BadInput, Fault
+from lumped.errors import BadInput, Fault, NotReached
 from lumped.result.result import Result, write_failure
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
@@ -17,6 +17,7 @@ from lumped.schema import Table
 if TYPE_CHECKING:  # finite elements are loaded when they are needed
     from fe_contact.plastic.fields import PressedAgain
     from fe_contact.reference import Solved
+    from fe_contact.studies.larger_models import SufficientModel
 
 
 EFFECTS = ("inertia", "kinematics", "plasticity")  # keys of the model that a larger one switches on
@@ -29,24 +30,31 @@ def execute(args: argparse.Namespace) -> int:
     scene, table = base.read_scene(args)
     args.method = default(scene) if args.method is None else args.method
     where = base.folder(args, "run", scene.name)
-    scene, taken = _modelled(args, scene, table)
-    _check(args, scene)
-    with base.recorded(partial(write_failure, where, scene, args.method)):
-        return _impact(args, scene, table, where, taken)
+    larger = _larger(args, scene, table)
+    asked = scene if larger is None else larger.scene
+    _check(args, asked)
+    with base.recorded(partial(write_failure, where, asked, args.method)):
+        while True:
+            try:
+                return _impact(args, asked, table, where, [] if larger is None else [str(larger)])
+            except NotReached as refused:
+                if larger is None or not larger.taken or args.method != "fe":
+                    raise
+                larger = larger.less(scene, refused)
+                asked = larger.scene
 
 
-def _modelled(args: argparse.Namespace, scene: Scene, table: Table) -> tuple[Scene, list[str]]:
-    """The scene with the model asked for, and a line that says which effects it takes in. Raises BadInput."""
+def _larger(args: argparse.Namespace, scene: Scene, table: Table) -> SufficientModel | None:
+    """The larger model that was asked for. Raises BadInput."""
     if args.model == "given":
-        return scene, []
+        return None
     if scene.shape is None:
         reason = "sufficient: there are larger models of a shape and a material, and the scene has a law alone"
         raise BadInput(Fault("--model", "", f"{reason}; accepted: given"))
     from fe_contact.methods import settings
     from fe_contact.studies.larger_models import sufficient
 
-    found = sufficient(scene, settings(table, None, scene.source))
-    return found.scene, [str(found)]
+    return sufficient(scene, settings(table, None, scene.source))
 
 
 def _impact(args: argparse.Namespace, scene: Scene, table: Table, where: Path, taken: list[str]) -> int:

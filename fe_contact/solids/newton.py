@@ -16,6 +16,9 @@ from fe_contact.solids.base import State, elliptic
 from fe_contact.solids.bulk import CoredBody, Loaded, Pattern
 from fe_contact.solids.contact import Obstacle, Points, Skin, Touch
 from lumped.errors import NotReached
+from lumped.scene.indenter import Indenter
+from lumped.scene.scene import Scene
+from lumped.shapes import Shape
 
 HASTY = 8  # work: whole steps before giving them up
 ASTRAY = 2  # work: whole steps in a row that promise more than the one before, which lead nowhere
@@ -35,37 +38,46 @@ SHORTEST = 1e-4  # share of a Newton step below which the energy stands still
 class EquilibriumLost(NotReached):
     """Newton's method found no equilibrium: the body folds, or strain left the range of its material.
 
-    ``owner``: the table of a scene file that the material stands in.
+    ``owner``: the table of a scene file that the material stands in; ``less``: what strains it less.
     """
 
-    def __init__(self, reason: str, owner: str = "target") -> None:
-        super().__init__(reason, f"smaller depths, or another {owner}.material.hyperelastic")
+    def __init__(self, reason: str, owner: str = "target", less: str = "smaller depths") -> None:
+        super().__init__(reason, f"{less}, or another {owner}.material.hyperelastic")
 
-    def of(self, owner: str) -> EquilibriumLost:
+    def of(self, owner: str, less: str) -> EquilibriumLost:
         """The same of the material in another table."""
-        return EquilibriumLost(self.reason, owner)
+        return EquilibriumLost(self.reason, owner, less)
 
 
 class BeyondRange(EquilibriumLost):
     """In equilibrium at this ``depth`` waves of some direction have no speed in the material: here it ends."""
 
-    def __init__(self, depth: float, owner: str = "target") -> None:
+    def __init__(self, depth: float, owner: str = "target", less: str = "smaller depths") -> None:
         reason = f"from a depth of {depth:.3g} m on the material softens so that strains gather in bands"
-        super().__init__(reason, owner)
+        super().__init__(reason, owner, less)
         self.depth = depth
 
-    def of(self, owner: str) -> BeyondRange:
+    def of(self, owner: str, less: str) -> BeyondRange:
         """The same of the material in another table."""
-        return BeyondRange(self.depth, owner)
+        return BeyondRange(self.depth, owner, less)
 
 
 @contextmanager
-def material_of(owner: str) -> Iterator[None]:
-    """Inside, what is lost names the material in this table of a scene file. Raises EquilibriumLost."""
+def material_of(pressed: Indenter | Scene) -> Iterator[None]:
+    """Inside, what is lost names the material that is ``pressed``, and what strains it less: under a tip no depth does.
+
+    Raises EquilibriumLost.
+    """
     try:
         yield
     except EquilibriumLost as lost:
-        raise lost.of(owner) from lost
+        less = "a blunter striker" if has_tip(pressed.profile) else "smaller depths"
+        raise lost.of(pressed.target.owner, less) from lost
+
+
+def has_tip(profile: Shape) -> bool:
+    """Whether strains grow without bound towards the axis, at any depth alike."""
+    return float(profile.slope(np.zeros(()))) > 0.0
 
 
 @dataclass(frozen=True, eq=False)

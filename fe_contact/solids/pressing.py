@@ -32,6 +32,7 @@ from fe_contact.solids.newton import (
     Equilibrium,
     EquilibriumLost,
     balanced,
+    has_tip,
     material_of,
 )
 from fe_contact.targets.base import TARGETS
@@ -203,7 +204,7 @@ def press(
 
     Raises NotReached.
     """
-    with material_of(indenter.target.owner):
+    with material_of(indenter):
         if isinstance(indenter.shape, Block) and indenter.shape.uniform:
             return _pressed_evenly(indenter, indenter.shape, depth)
         for wider in WIDER[:-1]:
@@ -274,7 +275,7 @@ def _together(profile: Shape, depth: Array) -> list[list[int]]:
     inside out under a deep one.
     """
     ascending: list[int] = np.argsort(depth).tolist()
-    if float(profile.slope(np.zeros(()))) == 0.0:
+    if not has_tip(profile):
         return [ascending]
     groups = list[list[int]]()
     for i in ascending:

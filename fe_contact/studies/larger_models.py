@@ -92,6 +92,12 @@ class SufficientModel:
         undecided = [f"{entry.effect} is open: {entry.note}; {entry.cure}" for entry in self.open]
         return "; ".join([said, *left, *undecided])
 
+    def less(self, own: Scene, refused: FeContactError) -> SufficientModel:
+        """Without the effect taken in last into the scene's ``own`` model, with which no answer was found."""
+        *taken, last = self.taken
+        scene, left = own.changed({one.key: one.value for one in taken}), {last.effect: _not_taken(last, refused)}
+        return replace(self, scene=scene, taken=tuple(taken), left={**self.left, **left})
+
 
 def above(ledger: Sequence[LedgerEntry], tolerance: float) -> list[LedgerEntry]:
     """Effects that exceed the tolerance certainly or possibly, and have a larger model, the largest first."""
@@ -194,7 +200,11 @@ def sufficient(scene: Scene, given: Given) -> SufficientModel:
             scene = _answered(scene.changed({entry.key: entry.value}), given)
             taken.append(entry)
         except FeContactError as refused:
-            left[entry.effect] = f"about {percent(entry.size)} of the peak force, and cannot be taken in: {refused}"
+            left[entry.effect] = _not_taken(entry, refused)
+
+
+def _not_taken(entry: LedgerEntry, refused: FeContactError) -> str:
+    return f"about {percent(entry.size)} of the peak force, and cannot be taken in: {refused}"
 
 
 def _answered(scene: Scene, given: Given) -> Scene:
