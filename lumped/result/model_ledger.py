@@ -276,6 +276,11 @@ def finite_strain(geometry: Geometry, peak: Peak, struck: bool) -> LedgerEntry:
         return LedgerEntry(effect, treated, 0.0, "nothing touches", key=LARGE, value="finite")
     rim = geometry.target.fixed_radius(geometry.shape) or math.inf  # beyond it, by rounding, a punch has no profile
     strains = geometry.target.strains(geometry.shape, material.nu, peak.depth, min(peak.contact_radius, rim))
+    energies = ENERGY_NAMES if material.hyperelastic is None else (material.hyperelastic,)
+    lost = [name for name in energies if geometry.target.pinched and strains.collapses(energy_of(name))]
+    if lost:
+        note = f"at nu = {material.nu:g} {ENERGY_NAMES[lost[0]]} loses its bulk modulus in these strains"
+        return LedgerEntry(effect, treated, None, f"{note}; {LARGE} = finite tells", LARGE, value="finite")
     if material.hyperelastic is not None:
         size, name = abs(strains.change(energy_of(material.hyperelastic), struck)), ENERGY_NAMES[material.hyperelastic]
         return LedgerEntry(effect, treated, size, f"{name}, to first order in strain", key=LARGE, value="finite")

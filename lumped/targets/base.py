@@ -66,6 +66,9 @@ class Target(Record, ABC):
     deformable: ClassVar[bool] = True
     large_strains: ClassVar[bool] = False
     endless: ClassVar[bool] = False
+    pinched: ClassVar[bool] = (
+        False  # whether it gives way as a whole where its material does, nothing beside it holding
+    )
     through: ClassVar[str] = ""  # what no depth may reach, where that is the height pressed
     lead: ClassVar[float] = 1.0  # how much an overlap at the first touch grows per depth
     strikers: ClassVar[tuple[str, ...]] = ()  # names of the only shapes that strike it, where it is for few

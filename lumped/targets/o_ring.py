@@ -35,6 +35,7 @@ class ORing(Target):
     through: ClassVar[str] = "the ring's thickness"
     strikers: ClassVar[tuple[str, ...]] = ("punch",)
     called: ClassVar[str] = "an O-ring"
+    pinched: ClassVar[bool] = True
     lead: ClassVar[float] = 0.5  # the other half is the other contact's
 
     def __post_init__(self) -> None:
