@@ -85,8 +85,8 @@ class RatioNotKnown(NotReached):
 class TooManySteps(NotReached):
     """The march used up its steps before the contact ended."""
 
-    def __init__(self, steps: int, time: float, cure: str = "an earlier motion.end_time") -> None:
-        super().__init__(f"{steps} steps reached only t = {time:.6g} s", cure)
+    def __init__(self, steps: int, time: float) -> None:
+        super().__init__(f"{steps} steps reached only t = {time:.6g} s", "an earlier motion.end_time")
 
 
 class ContactTooBrief(NotReached):
@@ -95,9 +95,6 @@ class ContactTooBrief(NotReached):
     def __init__(self, steps: int, time: float) -> None:
         cure = "--method ting where it answers, more numerics.steps, or less viscosity"
         super().__init__(f"the contact was over after {steps} steps, at t = {time:.3g} s, sooner than expected", cure)
-
-
-FINER_STEPS = "an earlier motion.end_time, or more numerics.steps"  # cure where they set how many a contact may take
 
 
 class IndentationNotSettled(NotReached):

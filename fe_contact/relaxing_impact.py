@@ -23,7 +23,7 @@ from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer, dominant
 from fe_contact.budget.solved import ImpactModel, record, solved
 from fe_contact.budget.variation import SAFETY, Variation, factor
-from fe_contact.errors import FINER_STEPS, ContactLost, MemoryTooSmall, TooManySteps
+from fe_contact.errors import ContactLost, MemoryTooSmall, TooManySteps
 from fe_contact.indentation import COARSEST
 from fe_contact.large_strains import check_impact
 from fe_contact.march.impact import STEPS_ALLOWED, balanced, share_of_rest, step_length, time_left
@@ -129,7 +129,7 @@ class Marcher:
         while instants[-1].time < self.strike.end_time * (1.0 - 1e-12):
             here = instants[-1]
             if len(instants) > STEPS_ALLOWED * self.numerics.steps:
-                raise TooManySteps(len(instants), here.time, FINER_STEPS)
+                raise TooManySteps(len(instants), here.time)
             left = self._time_left(instants)
             if left is not None and left < LAST * self.numerics.contact_time:
                 separated = True

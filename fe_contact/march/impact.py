@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_contact.assembly.forms import Array
-from fe_contact.errors import FINER_STEPS, ContactLost, ContactNotSettled, MemoryTooSmall, TooManySteps
+from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall, TooManySteps
 from fe_contact.progress import Counted, uncounted
 from fe_contact.settings import Numerics
 from fe_contact.steppers.steps import March, State, Step, Stepping, Strike, Work
@@ -110,7 +110,7 @@ class _Marcher:
         predicted, unseen = list[float](), 0.0
         while states[-1].time < strike.end_time * (1 - 1e-12):
             if len(steps) > STEPS_ALLOWED * self.numerics.steps:
-                raise TooManySteps(len(steps), states[-1].time, FINER_STEPS)
+                raise TooManySteps(len(steps), states[-1].time)
             left = self._time_left(steps)
             predicted.append(states[-1].time + (left or 0.0))
             step, lost = None, None

@@ -147,7 +147,7 @@ def test_the_ledger_has_a_spheres_first_order_as_finite_elements_find_it(nu: flo
 
 @pytest.mark.parametrize(("nu", "told_at_all"), [(-0.78, False), (-0.3, True)])
 def test_an_o_ring_that_loses_its_bulk_modulus_has_no_first_order(nu: float, told_at_all: bool) -> None:
-    """Neo-Hooke has hardly any below nu = -0.5, and loses it at a twentieth of its height: unknown, not told as less."""
+    """Neo-Hooke has hardly any below nu = -0.5, and loses it at a twentieth of its height: unknown, not less."""
     ring = Indenter(Punch(2.0), Material(Relaxation(1.0), nu, hyperelastic="neo_hooke"), ORing(1.0, 0.125))
     depth = 0.0125
     force, radius = measured(ring, depth)

@@ -255,6 +255,17 @@ def test_a_first_contact_that_does_not_end_is_no_contact(monkeypatch: pytest.Mon
         simulate(scene, "fe", {"steps": 40})
 
 
+@pytest.mark.parametrize("steps", [20, 40])
+def test_a_weight_that_creeps_for_long_is_followed_for_a_shorter_time_however_many_steps(steps: int) -> None:
+    """It swings for so many contact times; finer steps may be more, and each is shorter."""
+    fluid = {"law": "maxwell", "E": 1.8e6, "eta": 108.0, "nu": 0.3}
+    long = Scene.load("polymer-cone", {"target.material": fluid, "model.gravity": 3.5e-3, "motion.end_time": 9.5})
+    with pytest.raises(TooManySteps) as refused:
+        simulate(long, "fe", {"tolerance": 3e-2, "steps": steps})
+    assert refused.value.cure == "an earlier motion.end_time"
+    assert simulate(long.changed({"motion.end_time": 3.0}), "fe", {"tolerance": 3e-2, "steps": steps}).converged
+
+
 def test_a_march_ends_after_so_much_work(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(march, "MOST_WORK", 1e4)
     with pytest.raises(TooManySteps, match="cure: "):
