@@ -110,7 +110,7 @@ def record(moving: Moving, found: Motion, scene: Scene) -> March:
         radius=np.array([_radius(moving, s) for s in touched]),
         separated=separated,
         photograph=tuple,
-        energy=_before(energies(moving, found, scene, rest), fallen, scene.reduced_mass * scene.gravity),
+        energy=account_before(energies(moving, found, scene, rest), fallen, scene.reduced_mass * scene.gravity),
         end_spread=spread,
         first_force=0.0,
         work=Work(
@@ -122,7 +122,7 @@ def record(moving: Moving, found: Motion, scene: Scene) -> March:
     )
 
 
-def _before(account: dict[str, float], fallen: float, weight: float) -> dict[str, float]:
+def account_before(account: dict[str, float], fallen: float, weight: float) -> dict[str, float]:
     """The account, J, before the striker has ``fallen`` by so much, m, under a ``weight``, N, and nothing else."""
     given = weight * fallen
     return balanced({**account, "in": account["in"] - given, "out": account["out"] - given})

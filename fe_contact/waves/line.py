@@ -6,6 +6,7 @@ takes by itself is a witness of any other: two methods have one limit.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -145,6 +146,8 @@ class Line(Solution):
                 least["duration"] = _lost_in_rounding(fine)
             if cause == "time_step":
                 halved = _halved(other.reading, self.quarter.reading)
+                if not self._alone:  # touches fall anywhere in a step: by chance two lengths of it agree on them
+                    halved["history_l2"] = math.sqrt(0.5) * _distance(other.reading, self.quarter.reading)
                 least = {name: max(halved.get(name, 0.0), least.get(name, 0.0)) for name in halved | least}
             found[cause] = bars(fine, other.reading, least, self.safety)
         return found
@@ -164,13 +167,13 @@ def bars(fine: RodReading, coarse: RodReading, least: Mapping[str, float], safet
     """Quantities with ``safety`` times what twice the steps change as bars: order one, as at the fronts.
 
     At the ``least`` so much changes: at one instant two histories may cross, and by chance two steps may agree. A norm
-    does not cross zero.
+    does not cross zero, and knows a jump by the root of how far it is displaced.
     """
     found, changed = {}, _changes(fine, coarse)
     for name, unit in UNITS.items():
         value, error = fine.quantities[name], None
         if name == "history_l2":
-            error = SAFETY * _distance(fine, coarse)
+            error = max(SAFETY, math.sqrt(safety)) * max(_distance(fine, coarse), least.get(name, 0.0))
         elif value is not None:
             error = safety * max(changed[name], least.get(name, 0.0))
             error += ROUNDING * (1.0 if name in RULED_ABSOLUTE else abs(value))

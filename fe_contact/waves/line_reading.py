@@ -271,7 +271,7 @@ def _bar_ended(rows: Array, end: float) -> tuple[Array, float]:
 def _cleaned(rows: Array, spans: list[tuple[float, float]], echo: float) -> tuple[Array, list[tuple[float, float]]]:
     """Forces without the ringing of the first element at both ends of every contact and at fronts within the first, but
     a line through what lies beside, and the times between which that is so. There the force jumps: two rows of one time
-    at every end within the rows.
+    at every end within the rows. Where a contact opens beside its end, no line through there tells of its force.
     """
     time, cleaned, edges, blurred = rows[TIME], rows.copy(), list[Array](), list[tuple[float, float]]()
     for number, span in enumerate(spans):
@@ -282,6 +282,8 @@ def _cleaned(rows: Array, spans: list[tuple[float, float]], echo: float) -> tupl
                 continue
             for ordered, edge, ringing in ((pressed, start, behind), (pressed[::-1], end, RINGING)):
                 telling, spoiled = ordered[ringing : ringing + CLEAR], ordered[:ringing]
+                if not (rows[FORCE, telling] > 0.0).all():
+                    continue
                 line = np.polyfit(time[telling] - start, rows[FORCE, telling], 1)
                 cleaned[FORCE, spoiled] = np.maximum(np.polyval(line, time[spoiled] - start), 0.0)
                 blurred.append((min(edge, *time[spoiled]), max(edge, *time[spoiled])))

@@ -27,6 +27,7 @@ from lumped.solvers.bar import Bounces, StraightBar, bounces
 BAR = StraightBar(length=10.0, speed=30.0, impedance=30.0)
 ECHO = 2 / 3
 CASES = 40
+PLACES = 100_001  # at which two histories are compared
 
 
 @pytest.fixture(scope="module")
@@ -145,6 +146,10 @@ def test_bars_of_several_contacts_hold_what_gravity_and_touches_within_a_step_do
             over.setdefault(name, []).append((found.error or 0.0) / (abs(found.value - known) + 1e-12 * abs(known)))
         history, echo = result.history, case.exact.bar.echo
         sides = 1e-9 * echo * np.array([[-1.0], [0.0], [1.0]])
+        times = np.linspace(0.0, history.time[-1], PLACES)
+        force = case.exact.force(times)
+        norm = np.sqrt(np.mean((history.force_at(times) - force) ** 2) / np.mean(force**2))
+        assert norm <= (result.quantities["history_l2"].error or 0.0), case
         missed = np.abs(history.force - case.exact.force(history.time + sides)).min(axis=0)
         assert (missed <= history.force_error + 1e-6 * history.force.max()).all(), case
     assert max(np.median(ratios) for ratios in over.values()) <= 10.0
@@ -156,6 +161,13 @@ def test_energy_is_accounted_for(impact: Result, bouncing: Result) -> None:
         assert abs(energy["residual"]) < 1e-6 * energy["in"]
         assert energy["out"] == pytest.approx(energy["in"], rel=0.02)
         assert abs(energy["numerical"]) < 0.01 * energy["in"]
+
+
+def test_the_account_of_several_contacts_ends_with_the_last_of_them(bouncing: Result) -> None:
+    """As the restitution does: the march goes on until the contact is known to be over, and the bar falls meanwhile."""
+    last = bouncing.contacts[-1]
+    parted = (last["velocity"] or 0.0) * (last["restitution"] or 0.0)
+    assert bouncing.energy["out"] == pytest.approx(0.5 * BAR.mass * parted**2, rel=5e-3)
 
 
 @pytest.mark.tenth

@@ -35,6 +35,7 @@ from fe_contact.waves.line_reading import (
 )
 from fe_contact.waves.targets._block import plan
 from lumped import Scene
+from lumped.result.score import distance
 
 END = 1e-6  # s: no step, no front and no rounding may count in seconds
 MASS, SPEED, PUSH = 2.0, 3.0, 5.0
@@ -184,6 +185,23 @@ def test_contacts_move_by_what_half_the_steps_move_them_or_half_of_what_a_quarte
     assert line(fine, *later).moved == pytest.approx(max(half, 0.5 * abs(quarter - half)) * END)
 
 
+@pytest.mark.parametrize(("half", "quarter"), [(1.5, 4.0), (1.9, 2.0), (1.0, 3.0)])
+def test_a_norm_knows_a_touch_by_the_root_of_how_far_it_moves(half: float, quarter: float) -> None:
+    """A second contact begins late, by less than twice as much with half the steps: touches fall anywhere in a step."""
+    time, late = END * np.linspace(0.0, 4.0, 4001), 0.02 * END
+
+    def touching(by: float) -> Run:
+        force = PUSH * ((time < END) | ((time > 2.0 * END + by) & (time < 3.0 * END)))
+        rows = np.array([time, np.zeros_like(time), np.full_like(time, SPEED), force, -force])
+        contacts = tuple({"start": start, "duration": END} for start in (0.0, 2.0 * END + by))
+        return Run(reading(rows), {}, time.size - 1, time.size, contacts)
+
+    exact, fine = touching(0.0), touching(late)
+    found = line(fine, touching(half * late), touching(quarter * late)).quantities["history_l2"].error
+    missed = distance(fine.reading.force_at, exact.reading.force_at, time)
+    assert missed <= (found or 0.0) < 4.0 * missed
+
+
 def test_gravity_changes_the_speed_for_as_long_as_a_first_contact_may_end_later() -> None:
     """By what the steps move its end, over a safety that does not count here, or by how long it may faintly go on."""
     fine, moved, lower = thrown_back(0.0, 0.0), 0.03, 0.02 * SPEED * END
@@ -232,6 +250,18 @@ def test_what_rings_at_both_ends_of_a_contact_is_the_line_beside_it_that_jumps_f
     np.testing.assert_allclose(found[FORCE, first], np.where(rises, 0.0, line(jumps)), atol=1e-9)
     np.testing.assert_allclose(found[FORCE, first + 1], np.where(rises, line(jumps), 0.0), atol=1e-9)
     np.testing.assert_allclose(found[FORCE, np.isin(found[TIME], time)], force, atol=1e-9)
+
+
+@pytest.mark.parametrize("after", [1, 12])
+def test_forces_of_a_contact_that_opens_beside_its_ends_are_no_line_through_nothing(after: int) -> None:
+    """It presses for eleven steps, is open for twenty, and presses for some more: what the march says is told."""
+    time = np.arange(80.0)
+    again = 41.5 + after
+    force = PUSH * np.where(((time > 9.5) & (time < 20.5)) | ((time > 41.5) & (time < again)), 1.0, 0.0)
+    rows = np.array([time, time, np.ones_like(time), force, -time])
+    found, blurred = _cleaned(rows, [(9.5, again)], 1e3)
+    np.testing.assert_array_equal(found[FORCE], force)
+    assert not blurred
 
 
 def test_what_rings_at_fronts_within_a_first_contact_is_the_lines_before_and_behind() -> None:

@@ -19,9 +19,9 @@ from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
 from fe_contact.dynamics.stepping import Enforced
 from fe_contact.progress import Counted, Progress, uncounted
 from fe_contact.settings import Given, WaveNumerics
-from fe_contact.waves.impact import account
+from fe_contact.waves.impact import account, account_before
 from fe_contact.waves.line import LINE, Doubling, Run, witness
-from fe_contact.waves.line_reading import Ending, read_bar
+from fe_contact.waves.line_reading import DEPTH, Ending, read_bar
 from fe_contact.waves.plan import Cost
 from fe_contact.waves.targets.base import WaveTarget
 from lumped.errors import BadInput, Fault
@@ -171,6 +171,9 @@ def run(scene: Scene, numerics: WaveNumerics, counted: Counted = uncounted) -> R
     first = bar.area * math.sqrt(bar.density * bar.relaxation.glassy) * scene.velocity
     reading, contacts = read_bar(found, carried.sum(), scene, pause, echo, followed, first)
     energy = account(found, carried.sum())  # stored: strain, and motion about the centre of mass
+    if reading.separated:
+        fallen = float(found.samples[-1].displacement[0] - reading.rows[DEPTH, -1])
+        energy = account_before(energy, fallen, carried.sum() * scene.gravity)
     return Run(reading, energy, len(found.samples) - 1, body.size, contacts)
 
 
