@@ -76,10 +76,67 @@ class Line(Solution):
         """Whether the last contact ended."""
         return self.fine.reading.separated
 
-    @property
+    @cached_property
     def contacts(self) -> Contacts:
-        """Every contact, where there may be several."""
-        return self.fine.contacts
+        """Every contact, where there may be several; of several what each tells with its bar."""
+        if self._alone:
+            return self.fine.contacts
+        band = self.history()
+        return tuple(self._contact(number, band) for number in range(len(self.fine.contacts)))
+
+    def _contact(self, number: int, band: History) -> dict[str, float | None]:
+        """One of several contacts, with bars; None: the steps do not agree that there is such a thing."""
+        own, found = self.fine.contacts[number], dict[str, float | None]()
+        errors = self._first_errors if number == 0 else self._later_errors(number, band)
+        for name, value in own.items():
+            found |= {name: value, f"{name}_error": None if value is None else errors[name]}
+        return found
+
+    @property
+    def _first_errors(self) -> dict[str, float | None]:
+        """Bars of the first contact, whose touch is what the scene says, by name."""
+        return {"start": 0.0, "velocity": 0.0} | {name: known.error for name, known in self.quantities.items()}
+
+    def _later_errors(self, number: int, band: History) -> dict[str, float | None]:
+        """Bars of one that follows, by name: what the steps change of it, and what a touch as late as may be does.
+
+        A front that rings makes peaks of its own: the peak of the force is as well known as the ``band`` about the
+        force of the contact, and lies anywhere within it.
+        """
+        own, moved, late = self.fine.contacts[number], self._moved(number), self.safety * self.moved
+        if moved is None:
+            return dict.fromkeys(own)
+        start, came = own["start"] or 0.0, abs(own["velocity"] or 1.0)
+        end = start + (own["duration"] if own["duration"] is not None else np.inf)
+        inside = (band.time >= start - late) & (band.time <= end + late)
+        time, force, error = band.time[inside], band.force[inside], band.force_error[inside]
+        when = own["peak_time"] or 0.0
+        as_high = time[force + error >= (force - error).max()]
+        turned = abs(self.scene.gravity) * late
+        least = {
+            "start": late,
+            "duration": late,
+            "velocity": turned,
+            "restitution": turned / came,
+            "peak_force": float(error.max(initial=0.0)),
+            "peak_time": late + float(np.abs(as_high - when).max(initial=0.0)),
+            "peak_depth": came * late,
+        }
+        return {name: max(self.safety * moved[name], least[name]) for name in own}
+
+    def _moved(self, number: int) -> dict[str, float] | None:
+        """What the steps, or half of what twice the steps, change of a contact, and other methods; None: not all have
+        it.
+        """
+        half = self.others["time_step"]
+        pairs = [(1.0, self.fine, other) for other in self.others.values()] + [(0.5, half, self.quarter)]
+        if any(len(other.contacts) <= number for _, _, other in pairs):
+            return None
+        found = dict[str, float]()
+        for name in self.fine.contacts[number]:
+            both = [(share, one.contacts[number][name], other.contacts[number][name]) for share, one, other in pairs]
+            found[name] = max(share * _between(one, other) for share, one, other in both)
+        return found
 
     @property
     def energy(self) -> Mapping[str, float]:
@@ -196,6 +253,13 @@ def _changes(fine: RodReading, coarse: RodReading) -> dict[str, float]:
     return found | {"impulse": abs(turned) + abs(pressed + turned)}
 
 
+def _between(one: float | None, other: float | None) -> float:
+    """How far two values are apart; infinitely where only one of them is known."""
+    if one is None or other is None:
+        return 0.0 if one is other else np.inf
+    return abs(one - other)
+
+
 def _halved(coarse: RodReading, coarser: RodReading) -> dict[str, float]:
     """At least half of what doubling the steps before changed, by quantity that both have: order one."""
     return {name: 0.5 * change for name, change in _changes(coarse, coarser).items() if np.isfinite(change)}
@@ -263,13 +327,13 @@ def _apart(fine: Run, coarse: Run) -> float:
 def _faintly(fine: Run, coarse: Run) -> list[tuple[float, float]]:
     """How long after each contact and before the next one both may faintly press, s.
 
-    They may while the gap is smaller than what the steps change of it.
+    They may while the gap is smaller than its error, by what the steps change of it.
     """
     other, found = coarse.reading.rows, list[tuple[float, float]]()
     for one, then in pairwise(fine.contacts):
         end, start = (one["start"] or 0.0) + (one["duration"] or 0.0), then["start"] or 0.0
         time, dent = (_free(fine, end, start)[row] for row in (TIME, DENT))
-        near = time[-dent < np.abs(dent - np.interp(time, other[TIME], other[DENT]))]
+        near = time[-dent < SAFETY * np.abs(dent - np.interp(time, other[TIME], other[DENT]))]
         highest = time[np.argmin(dent)]
         left, touching = near[near <= highest], near[near > highest]
         found.append((float(left.max(initial=end)) - end, start - float(touching.min(initial=start))))

@@ -107,6 +107,17 @@ class Bouncing(NamedTuple):
             "peak_force": float(exact.force(sides[(sides > begin) & (sides < end)]).max()),
         }
 
+    def told(self, number: int) -> dict[str, float]:
+        """Start and duration, s, of one of its contacts, velocity there, m/s, restitution, largest force, N."""
+        exact, (begin, end) = self.exact, self.contacts[number]
+        came, left = (-exact.momentum(time * (1.0 - 1e-13)) / exact.bar.mass for time in (begin, end))
+        starts = np.array([piece.start for piece in exact.pieces])
+        jumps = np.concatenate([starts, starts + exact.bar.echo, [end]])
+        sides = np.concatenate([jumps - 1e-9 * exact.bar.echo, jumps + 1e-9 * exact.bar.echo])
+        highest = float(exact.force(sides[(sides > begin) & (sides < end)]).max())
+        found = {"start": begin, "duration": end - begin, "velocity": came, "restitution": -left / came}
+        return found | {"peak_force": highest}
+
     def given(self, time: float) -> float:
         """Momentum that the plane gave the bar until then, N s."""
         exact = self.exact
@@ -152,7 +163,34 @@ def test_bars_of_several_contacts_hold_what_gravity_and_touches_within_a_step_do
         assert norm <= (result.quantities["history_l2"].error or 0.0), case
         missed = np.abs(history.force - case.exact.force(history.time + sides)).min(axis=0)
         assert (missed <= history.force_error + 1e-6 * history.force.max()).all(), case
+        for number, contact in enumerate(result.contacts):
+            for name, known in case.told(number).items():
+                bar = contact[f"{name}_error"]
+                assert bar is not None, (number, name, case)
+                assert abs((contact[name] or 0.0) - known) <= bar + 1e-9 * abs(known), (number, name, case)
     assert max(np.median(ratios) for ratios in over.values()) <= 10.0
+
+
+def test_a_front_that_leaves_hardly_any_force_may_end_a_first_contact_later_than_it_seems() -> None:
+    """Weight x echo is hardly more than the momentum: the first element's ringing opens what presses on so faintly."""
+    gravity, steps = 1.0055959495804103 * 10.0 / ECHO, 208
+    exact = bounces(BAR, 10.0, gravity, 0.0, 4.0 * ECHO)
+    scene = Scene.load("bar", {"model.gravity": gravity, "motion.impacts": 2, "motion.end_time": 20.0 * ECHO})
+    found = fe_contact.run(scene, tolerance=0.1, numerics={"steps": steps})
+    end = exact.contacts[0][1]
+    assert covers(found, "duration", end)
+    assert covers(found, "restitution", exact.momentum(end * (1.0 - 1e-13)) / (BAR.mass * 10.0))
+
+
+def test_what_fronts_ring_in_a_later_contact_is_within_its_bars() -> None:
+    """A mass twice as heavy as the bar: eight times as many steps tell what lies within the bars of both."""
+    scene = Scene.load("bar", {"striker.mass": 22.0})
+    few, many = (fe_contact.run(scene, tolerance=0.1, numerics={"steps": steps}) for steps in (100, 800))
+    assert len(few.contacts) == len(many.contacts) == 2
+    coarse, fine = few.contacts[1], many.contacts[1]
+    for name in ("start", "duration", "velocity", "restitution", "peak_force", "peak_time", "peak_depth"):
+        bars = (coarse[f"{name}_error"] or 0.0) + (fine[f"{name}_error"] or 0.0)
+        assert 0.0 < abs((coarse[name] or 0.0) - (fine[name] or 0.0)) <= bars, name
 
 
 def test_energy_is_accounted_for(impact: Result, bouncing: Result) -> None:
