@@ -101,8 +101,11 @@ def model_of(scene: Scene) -> ImpactModel:
     if scene.model.finite:
         from fe_contact.large_strains import ELASTIC
         from fe_contact.relaxing_impact import RELAXING
+        from fe_contact.relaxing_punch import PUNCHED
 
-        return ELASTIC if scene.geometry.material.young.is_elastic else RELAXING
+        if scene.geometry.material.young.is_elastic:
+            return ELASTIC
+        return PUNCHED if scene.geometry.sharp_rim else RELAXING
     return _of_waves(with_waves(scene)) if scene.model.inertia else STATICS
 
 

@@ -134,6 +134,15 @@ class WaveNumerics(Numerics):
         return self.echoes > 0.0 and self.swing == 0.0
 
 
+@dataclass(frozen=True)
+class EdgedNumerics(Numerics):
+    """Of a flat end whose rim is sharp, struck as the limit of ever narrower edges: ``edge_radius``, m, of the
+    narrowest; the rest as in Numerics.
+    """
+
+    edge_radius: float = 0.0
+
+
 KEYS = keys_of(WaveNumerics)  # what a user may choose
 SCALES = {  # what a plan estimates, by field
     "contact_radius": "m, the largest that is expected",
@@ -142,6 +151,7 @@ SCALES = {  # what a plan estimates, by field
     "finer": "times as many elements at the surface as the body has, with waves",
     "echoes": "how often a wave comes back in the contact time",
     "swing": "of the peak force, by echoes that the steps do not follow",
+    "edge_radius": "m, of the narrowest edge around a flat end whose rim is sharp",
 }
 RANGES = {name: (key.kind.low, key.kind.high) for name, key in KEYS.items() if isinstance(key.kind, Range)}
 

@@ -82,6 +82,11 @@ class Solution(Protocol):
         """Values with their bars."""
 
     @property
+    def causes(self) -> tuple[str, ...]:
+        """What its bars are made of."""
+        return CAUSES
+
+    @property
     def parts(self) -> tuple[Mapping[str, Quantity], ...]:
         """The same of every contact that the tolerance rules."""
         return (self.quantities,)
@@ -134,6 +139,11 @@ class Budget(Solution):
         """Whether the contact ended."""
         return self.curve.separated
 
+    @property
+    def causes(self) -> tuple[str, ...]:
+        """Those of every impact, then those of its own."""
+        return (*CAUSES, *(cause for cause in self.changes if cause not in CAUSES))
+
     @cached_property
     def quantities(self) -> Mapping[str, Quantity]:
         """Values with their bars; the history's own value is no distance from itself."""
@@ -165,7 +175,7 @@ class Budget(Solution):
 
     def total(self, name: str) -> float:
         """Error bar of a quantity, in its unit."""
-        return sum(self.error(name, cause) for cause in CAUSES)
+        return sum(self.error(name, cause) for cause in self.causes)
 
     def energy_error(self, name: str) -> float:
         """Error bar of a term of the energy account, J; infinite where a variation failed.

@@ -375,8 +375,11 @@ class Curve:
 
 def extrapolated(fine: Curve, coarse: Curve, order: int) -> Curve:
     """Richardson's extrapolation of two curves whose step lengths are as one to two."""
-    weight = 1 / (2**order - 1)
+    return beyond(fine, coarse, 1 / (2**order - 1))
 
+
+def beyond(fine: Curve, coarse: Curve, weight: float) -> Curve:
+    """The curve that lies on from a coarse one beyond a fine one by a ``weight`` of their distance, at equal shares."""
     mean, _, depth = coarse.resolved(fine.x)
     found = Curve(
         strike=_onwards(fine.strike, coarse.strike, weight),

@@ -9,7 +9,7 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
-from fe_contact.budget.budget import CAUSES, Budget, Solution, shares_of
+from fe_contact.budget.budget import Budget, Solution, shares_of
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import ImpactWay, refine
 from fe_contact.budget.several import Row, Several
@@ -94,7 +94,7 @@ def record(scene: Scene, solved: SolvedBy[Solution], recovery: IndentationLeft |
     found = solved.certified
     if isinstance(found, Several) and scene.motion.impacts > 1:
         found = Row(found)
-    by_quantity = {name: {cause: found.error(name, cause) for cause in CAUSES} for name in UNITS}
+    by_quantity = {name: {cause: found.error(name, cause) for cause in found.causes} for name in UNITS}
     peak = found.quantities["peak_force"].value or np.inf
     missed = _missed(scene, solved, found)
     said = [*missed]
@@ -152,7 +152,7 @@ def _missed(scene: Scene, solved: SolvedBy[Solution], found: Solution) -> list[s
     met = 10.0 ** (math.ceil(10.0 * math.log10(largest)) / 10.0) if math.isfinite(largest) else None  # rounded up
     none = met is not None and met > RANGES["tolerance"][1]
     reached = "" if met is None else NONE_MET if none else f"a tolerance of {met:.2g} is met"
-    cause = max(CAUSES, key=lambda one: float(shares_of(found, one).max()))
+    cause = max(found.causes, key=lambda one: float(shares_of(found, one).max()))
     said = [*missed, f"the largest cause is the {cause.replace('_', ' ')}", solved.refused, reached]
     cures = _cures(found, cause, solved.plan.pinned, none)
     return [*filter(None, said), f"cure: {', or '.join(cures)}" if cures else NO_CURE]
@@ -163,7 +163,7 @@ def _cures(found: Solution, cause: str, pinned: Container[str], none_met: bool) 
 
     A larger tolerance is met, or asks for other settings, unless it was the largest, or one's own stand against it.
     """
-    own = [how.format(key) for key, how in HELD[cause].items() if key in pinned]
+    own = [how.format(key) for key, how in HELD.get(cause, {}).items() if key in pinned]
     if not none_met:
         return [LOOSER, *own]
     if not found.separated:

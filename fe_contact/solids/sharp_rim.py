@@ -53,10 +53,14 @@ def faults(source: str, geometry: Geometry) -> list[Fault]:
     return [Fault(source, "striker.radius", f"{geometry.shape.flat_radius:g}: {reason}")]
 
 
+def rounded_shapes(geometry: Geometry) -> tuple[RoundedPunch, ...]:
+    """The flat end with each of the edges around it, the widest first."""
+    return tuple(RoundedPunch(geometry.shape.flat_radius, edge) for edge in edges_of(geometry))
+
+
 def rounded(indenter: Indenter, place: int = BEGUN) -> Indenter:
     """The same with one of the edges around its flat end."""
-    shape = RoundedPunch(indenter.shape.flat_radius, edges_of(indenter.geometry)[place])
-    return replace(indenter, shape=shape)
+    return replace(indenter, shape=rounded_shapes(indenter.geometry)[place])
 
 
 def narrowed(indenter: Indenter, tolerance: float, press: Press) -> Indentation:
@@ -88,10 +92,9 @@ def _limit(indenter: Indenter, tolerance: float, edges: Sequence[Indentation]) -
     Farther off where the power that the three show says so. Raises EquilibriumLost where they show none.
     """
     wide, narrow = edges[0], edges[-1]
-    sharpest, bluntest = (_onwards(np.full_like(narrow.force, order)) for order in ORDERS)
-    onwards, falls = 0.5 * (sharpest + bluntest), wide.force - narrow.force
+    falls, onwards = wide.force - narrow.force, ONWARDS
     force = narrow.force - onwards * falls
-    unsure = np.maximum(bluntest - onwards, np.abs(_onwards(_power(edges)) - onwards)) * np.abs(falls)
+    unsure = unsure_of(_power(edges)) * np.abs(falls)
     budget = {
         cause: ((1.0 + onwards) * error * narrow.force + onwards * wide.budget[cause] * wide.force) / force
         for cause, error in narrow.budget.items()
@@ -112,8 +115,16 @@ def _limit(indenter: Indenter, tolerance: float, edges: Sequence[Indentation]) -
 
 def _power(edges: Sequence[Indentation]) -> Array:
     """Of the edge's radius, which the forces show from edge to edge, (n,). Raises EquilibriumLost where they do not."""
-    wider, narrower = (one.force - other.force for one, other in pairwise(edges))
-    unsure = [one.force_error + other.force_error for one, other in pairwise(edges)]
+    return power_of([one.force for one in edges], [one.force_error for one in edges])
+
+
+def power_of(values: Sequence[Array], errors: Sequence[Array]) -> Array:
+    """Of the edge's radius, (n,), by which values of three edges, each (n,), fall from the widest edge on.
+
+    Raises EquilibriumLost where they show none, whatever their errors, (n,), are.
+    """
+    wider, narrower = (one - other for one, other in pairwise(values))
+    unsure = [one + other for one, other in pairwise(errors)]
     least, most = (STEP**power for power in SHOWN)
     steep = wider - unsure[0] > most * (narrower + unsure[1])
     if np.any(steep | (wider + unsure[0] < least * (narrower - unsure[1]))):
@@ -123,5 +134,13 @@ def _power(edges: Sequence[Indentation]) -> Array:
 
 
 def _onwards(power: Array) -> Array:
-    """What the force still falls by from the narrowest edge on, over what it fell by from the widest to it, (n,)."""
+    """What a value still falls by from the narrowest edge on, over what it fell by from the widest to it, (n,)."""
     return np.asarray(1.0 / (STEP ** (2.0 * power) - 1.0))
+
+
+ONWARDS = float(np.mean(_onwards(np.array(ORDERS))))  # the same midway between what both powers say
+
+
+def unsure_of(power: Array) -> Array:
+    """How far off that may be, (n,): as the powers are, and farther where one that shows, (n,), says so."""
+    return np.asarray(np.maximum(np.ptp(_onwards(np.array(ORDERS))) / 2.0, np.abs(_onwards(power) - ONWARDS)))

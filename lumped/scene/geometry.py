@@ -210,11 +210,6 @@ def finite_faults(source: str, model: Model, geometry: Geometry, impacts: int | 
             "striker.shape" if target.large_strains else "target.shape",
             f"a {shape.name} on a {target.name} is not built {state}; accepted: {instead}",
         ),
-        (
-            relaxing and geometry.sharp_rim,
-            "striker.shape",
-            f"a {shape.name}, whose rim is sharp, on what relaxes is not built {state}; accepted: rounded_punch",
-        ),
         (geometry.striker_material is not None, "striker.material", f"the striker is rigid {state}; leave it out"),
         (model.inertia, "model.inertia", f"true: no waves {state}; accepted: false"),
         (model.plasticity, "model.plasticity", f"true: nothing yields {state}; accepted: false"),
