@@ -39,6 +39,7 @@ from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.result import LedgerEntry, Result, meets
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
+from lumped.schema import Table
 
 ROUNDS = 3  # refinements before giving up
 SECONDS = 15.0  # processor time of an impact to 1e-3, about
@@ -309,10 +310,15 @@ def _throughout(change: Variation) -> Variation:
 def plan(scene: Scene, given: Given) -> Plan:
     """Settings and ledger; scales are those of small strains. Raises NotReached."""
     check_impact(scene, given)
-    known, tolerance = statics.plan(scene, {}), tolerance_of(given)
+    known = statics.plan(scene, {})
+    return Plan(known.numerics.varied(**settings(given)), frozenset(given) - {"tolerance"}, known.ledger)
+
+
+def settings(given: Given) -> Table:
+    """Those that small strains choose otherwise, and those that are given."""
+    tolerance = tolerance_of(given)
     elements = max(COARSEST, ELEMENTS * (DEFAULT_TOLERANCE / tolerance) ** 0.5)
-    chosen = {"tolerance": tolerance, "elements_per_contact": elements, "penalty": PENALTY, **given}
-    return Plan(known.numerics.varied(**chosen), frozenset(given) - {"tolerance"}, known.ledger)
+    return {"tolerance": tolerance, "elements_per_contact": elements, "penalty": PENALTY, **given}
 
 
 @dataclass(frozen=True)

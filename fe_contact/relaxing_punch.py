@@ -1,7 +1,7 @@
 """An impact with large strains by a punch, whose rim is sharp, on what relaxes: the limit of ever narrower edges.
 
-Three impacts by edges are certified, each by itself. At equal shares of their contacts, and in all that is read of them,
-they differ by the power of the edge's radius by which edges add to a force: see :mod:`fe_contact.solids.sharp_rim`.
+Three impacts by edges are certified, each by itself. At equal shares of their contacts they differ by the power of the
+edge's radius by which edges add to a force: see :mod:`fe_contact.solids.sharp_rim`.
 """
 
 from __future__ import annotations
@@ -16,22 +16,23 @@ import numpy as np
 from fe_contact.budget import plan as statics
 from fe_contact.budget.budget import Budget, Causes, TotalWork, shares_of
 from fe_contact.budget.curve import beyond
-from fe_contact.budget.plan import Plan
+from fe_contact.budget.plan import FLAT_STEPS, Plan
 from fe_contact.budget.refine import DOMINANT, Finer, dominant
 from fe_contact.budget.solved import ImpactModel, record, solved
 from fe_contact.budget.variation import Variation
 from fe_contact.large_strains import check_impact
 from fe_contact.progress import Progress, silent
-from fe_contact.relaxing_impact import ROUNDS, SECONDS, Marcher, RelaxingStrikes
-from fe_contact.relaxing_impact import plan as plan_rounded
+from fe_contact.relaxing_impact import ROUNDS, SECONDS, RelaxingStrikes, settings
 from fe_contact.settings import EdgedNumerics, Given, Numerics, tolerance_of
 from fe_contact.solids.newton import EquilibriumLost
-from fe_contact.solids.pressing import exhausted
 from fe_contact.solids.sharp_rim import FEWEST, ONWARDS, ORDERS, SHARE, edges_of, power_of, rounded_shapes, unsure_of
+from lumped.errors import NotReached
 from lumped.result.history import History
 from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.result import LedgerEntry, Result, meets
+from lumped.scene.geometry import Geometry
 from lumped.scene.scene import Scene
+from lumped.targets import HalfSpace, Target
 
 FALLING = ("peak_force", "peak_depth", "duration")  # quantities that show the power; all else falls in less
 
@@ -81,8 +82,9 @@ def _unsure(edges: Sequence[Budget]) -> float:
     values = np.array([[one.value or 0.0 for one in row] for row in told])  # what has no end has no duration
     errors = np.array([[one.error or 0.0 for one in row] for row in told])
     falls = values[0] - values[-1]
-    power = power_of(np.sign(falls) * values, errors)
-    clearest = int(np.argmax(np.abs(falls) / np.maximum(errors.sum(axis=0), np.finfo(float).tiny)))
+    power = power_of(list(np.sign(falls) * values), list(errors))
+    rounding = np.finfo(float).eps * np.abs(values).max(axis=0) + np.finfo(float).tiny
+    clearest = int(np.argmax(np.abs(falls) / (errors.sum(axis=0) + rounding)))
     return float(unsure_of(power)[clearest])
 
 
@@ -110,8 +112,8 @@ class PunchStrikes:
         narrowest, found = self._narrowest(numerics), list[Budget]()
         for place in range(narrowest + 1 - FEWEST, narrowest + 1):
             radius = self.radii[place] / self.radii[narrowest] * numerics.contact_radius
-            way = RelaxingStrikes(self.edged[place], self.chosen, self.progress)
-            found.append(way.certified(numerics.varied(contact_radius=radius)))
+            strikes = RelaxingStrikes(self.edged[place], self.chosen, self.progress)
+            found.append(strikes.certified(numerics.varied(contact_radius=radius)))
         return limit(found, numerics, self.scene.geometry.shape.flat_radius)
 
     def _narrowest(self, numerics: Numerics) -> int:
@@ -125,17 +127,13 @@ class PunchStrikes:
             return Finer(None)
         excess = {cause: float(shares_of(found, cause).max()) for cause in found.causes}
         bound = DOMINANT * min(max(excess.values()), 1.0)
-        settings, narrower = found.numerics, self._narrowest(found.numerics) + 1
+        numerics, narrower = found.numerics, self._narrowest(found.numerics) + 1
         edges = edges_of(self.scene.geometry)
         if excess.pop("edge") >= bound and narrower < len(edges):
-            settings = settings.varied(edge_radius=edges[narrower], contact_radius=self.radii[narrower])
+            numerics = numerics.varied(edge_radius=edges[narrower], contact_radius=self.radii[narrower])
         standing = {cause: share for cause, share in excess.items() if share >= bound}
-        kept = self.chosen.pinned | exhausted(self._mesh_order(settings), settings)
-        finer = dominant(standing, settings, kept, least=1.0) if standing else None
-        return Finer(finer or (None if settings == found.numerics else settings))
-
-    def _mesh_order(self, numerics: Numerics) -> float:
-        return Marcher.of(self.edged[self._narrowest(numerics)], numerics).solid.mesh_order
+        finer = dominant(standing, numerics, self.chosen.pinned, least=1.0) if standing else None
+        return Finer(finer or (None if numerics == found.numerics else numerics))
 
     def ledger(self, found: PunchBudget) -> tuple[LedgerEntry, ...]:
         """What the model leaves out of the impact that was found."""
@@ -149,18 +147,17 @@ def edged(scene: Scene) -> tuple[Scene, ...]:
 
 def plan(scene: Scene, given: Given) -> Plan:
     """Settings and ledger; scales are those of small strains. Raises NotReached."""
-    return _plan(0, scene, given)
-
-
-def _plan(wider: int, scene: Scene, given: Given) -> Plan:
-    """The same with edges as many places ``wider`` than small strains say. Raises NotReached."""
     check_impact(scene, given)
-    contacts = expected_contacts(scene)
-    place = max(_narrow_enough([one.force for one in contacts], tolerance_of(given)) - wider, FEWEST - 1)
-    rounded = plan_rounded(edged(scene)[place], given)
-    sizes = {"contact_radius": contacts[place].contact_radius, "edge_radius": edges_of(scene.geometry)[place]}
-    numerics = EdgedNumerics(**rounded.numerics.as_dict() | sizes)
-    return Plan(numerics, rounded.pinned, statics.plan(scene, {}).ledger)
+    return _plan(_narrow_enough(scene, tolerance_of(given)), scene, given)
+
+
+def _plan(place: int, scene: Scene, given: Given) -> Plan:
+    """With the narrowest edge of a place. Raises NotReached."""
+    known, radius = statics.plan(scene, {}), expected_contacts(scene)[place].contact_radius
+    edge = {"contact_radius": radius, "edge_radius": edges_of(scene.geometry)[place]}
+    steps = {"steps": known.numerics.steps // FLAT_STEPS}  # which no edge asks for
+    numerics = EdgedNumerics(**known.numerics.as_dict() | steps | settings(given) | edge)
+    return Plan(numerics, frozenset(given) - {"tolerance"}, known.ledger)
 
 
 class Pressed(NamedTuple):
@@ -171,18 +168,29 @@ class Pressed(NamedTuple):
 
 
 def expected_contacts(scene: Scene) -> list[Pressed]:
-    """Under the edges, the widest first, at the depth that small strains have under none. Raises NotReached."""
+    """Under the edges, the widest first, at the depth that small strains have under none. Raises NotReached.
+
+    Where a layer has no curve of them to all digits, as of a half-space that presses back as hard.
+    """
     depth = statics.scales(scene, statics.plan(scene, {}).numerics).peak_depth
-    target, nu = scene.geometry.target, scene.geometry.material.nu
-    curves = [target.load_curve(shape, nu) for shape in rounded_shapes(scene.geometry)]
+    geometry = scene.geometry
+    try:
+        return _pressed(geometry, geometry.target, depth)
+    except NotReached:
+        force, soft = (one.load_curve(geometry.shape, geometry.material.nu) for one in (geometry.target, HalfSpace()))
+        return _pressed(geometry, HalfSpace(), depth * float(force.force(depth) / soft.force(depth)))
+
+
+def _pressed(geometry: Geometry, target: Target, depth: float) -> list[Pressed]:
+    curves = [target.load_curve(shape, geometry.material.nu) for shape in rounded_shapes(geometry)]
     return [Pressed(float(curve.force(depth)), float(curve.contact_radius(depth))) for curve in curves]
 
 
-def _narrow_enough(force: Sequence[float], tolerance: float) -> int:
-    """Place of the narrowest of three edges of which these forces, (n,), leave no more than a share of the tolerance;
-    the last where none do.
+def _narrow_enough(scene: Scene, tolerance: float) -> int:
+    """Place of the narrowest of three edges that at small strains leave no more than a share of the tolerance; the last
+    where none do. Raises NotReached.
     """
-    unsure = float(unsure_of(np.array(ORDERS[0])))
+    unsure, force = float(unsure_of(np.array(ORDERS[0]))), [one.force for one in expected_contacts(scene)]
     for place in range(FEWEST - 1, len(force)):
         if unsure * (force[place + 1 - FEWEST] / force[place] - 1.0) <= SHARE * tolerance:
             return place
@@ -197,13 +205,16 @@ def expected(scene: Scene, given: Given) -> tuple[float, float]:
 
 def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
     """Force history and error bars. Raises NotReached where an equilibrium is lost under the widest edges too."""
-    places = range(len(edges_of(scene.geometry)))
-    for wider in places:
+    place = _narrow_enough(scene, tolerance_of(given))
+    while True:
         try:
-            return record(scene, solved(scene, given, progress, partial(_plan, wider), PunchStrikes))
-        except EquilibriumLost as lost:
-            pass
-    raise lost
+            found = solved(scene, given, progress, partial(_plan, place), PunchStrikes)
+        except EquilibriumLost:
+            if place < FEWEST:
+                raise
+            place -= 1
+        else:
+            return record(scene, found)
 
 
 PUNCHED = ImpactModel(check_impact, plan, expected, fe)

@@ -147,8 +147,8 @@ ROOMS = {  # lowest first
     ),
     "fe_contact": (
         "errors settings progress threads assembly contact schemes dynamics bodies steppers march targets solids "
-        "budget fields plastic indentation recovery waves large_strains relaxing_impact relaxing_punch reference methods "
-        "studies manual commands cli __main__ __init__"
+        "budget fields plastic indentation recovery waves large_strains relaxing_impact relaxing_punch reference "
+        "methods studies manual commands cli __main__ __init__"
     ),
 }
 FILES_AT_A_ROOT = 14

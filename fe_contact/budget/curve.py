@@ -375,14 +375,27 @@ class Curve:
 
 def extrapolated(fine: Curve, coarse: Curve, order: int) -> Curve:
     """Richardson's extrapolation of two curves whose step lengths are as one to two."""
-    return beyond(fine, coarse, 1 / (2**order - 1))
+    found = _onwards(fine, coarse, 1 / (2**order - 1))
+    return replace(found, energy=_by_speed(found))
 
 
 def beyond(fine: Curve, coarse: Curve, weight: float) -> Curve:
-    """The curve that lies on from a coarse one beyond a fine one by a ``weight`` of their distance, at equal shares."""
+    """The curve onwards from a coarse one by a ``weight`` of what a fine one is apart from it, at equal shares.
+
+    It is impulses that go onwards: forces and durations that do so both would leave of their product, which hardly
+    changes, the square of what they change.
+    """
+    found, (mean, _, _) = _onwards(fine, coarse, weight), coarse.resolved(fine.x)
+    pressed, before = fine.duration * fine.mean_force, coarse.duration * mean
+    found = replace(found, mean_force=(pressed + weight * (pressed - before)) / found.duration)
+    return replace(found, energy=_by_speed(found))
+
+
+def _onwards(fine: Curve, coarse: Curve, weight: float) -> Curve:
+    """The same of forces, with the energies of squares of speeds, not of a speed's square."""
     mean, _, depth = coarse.resolved(fine.x)
-    found = Curve(
-        strike=_onwards(fine.strike, coarse.strike, weight),
+    return Curve(
+        strike=_strike_onwards(fine.strike, coarse.strike, weight),
         duration=fine.duration + weight * (fine.duration - coarse.duration),
         separated=fine.separated,
         x=fine.x,
@@ -393,7 +406,6 @@ def beyond(fine: Curve, coarse: Curve, weight: float) -> Curve:
         end_spread=fine.end_spread + weight * (fine.end_spread + coarse.end_spread),
         energy={name: value + weight * (value - coarse.energy[name]) for name, value in fine.energy.items()},
     )
-    return replace(found, energy=_by_speed(found))
 
 
 def _by_speed(curve: Curve) -> Energies:
@@ -404,7 +416,7 @@ def _by_speed(curve: Curve) -> Energies:
     return balanced({**energy, "out": out, "numerical": energy["numerical"] + energy["out"] - out})
 
 
-def _onwards(fine: Strike, coarse: Strike, weight: float) -> Strike:
+def _strike_onwards(fine: Strike, coarse: Strike, weight: float) -> Strike:
     """The strike of which the touch is extrapolated too: of a first one all settings know it."""
     touches = [np.array([strike.touched_at, strike.depth, strike.velocity]) for strike in (fine, coarse)]
     touched_at, depth, velocity = (touches[0] + weight * (touches[0] - touches[1])).tolist()
