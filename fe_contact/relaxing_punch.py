@@ -25,7 +25,17 @@ from fe_contact.progress import Progress, silent
 from fe_contact.relaxing_impact import ROUNDS, SECONDS, RelaxingStrikes, settings
 from fe_contact.settings import EdgedNumerics, Given, Numerics, tolerance_of
 from fe_contact.solids.newton import EquilibriumLost
-from fe_contact.solids.sharp_rim import FEWEST, ONWARDS, ORDERS, SHARE, edges_of, power_of, rounded_shapes, unsure_of
+from fe_contact.solids.sharp_rim import (
+    FEWEST,
+    ONWARDS,
+    ONWARDS_ONCE,
+    ORDERS,
+    SHARE,
+    edges_of,
+    power_of,
+    rounded_shapes,
+    unsure_of,
+)
 from lumped.errors import NotReached
 from lumped.result.history import History
 from lumped.result.model_ledger import Peak, model_ledger
@@ -34,6 +44,9 @@ from lumped.scene.geometry import Geometry
 from lumped.scene.scene import Scene
 from lumped.targets import HalfSpace, Target
 
+# What a term of twice the power leaves of the way from the widest edge, over what that differs from the way from the
+# middle one: 1 + (1 - 16)/3 = -4 over it less 1 + (1 - 4) = -2, where an edge adds half as much as the one before.
+SECOND_ORDER = 2.0
 FALLING = ("peak_force", "peak_depth", "duration")  # quantities that show the power; all else falls in less
 
 
@@ -52,9 +65,10 @@ class PunchBudget(Budget):
 def limit(edges: Sequence[Budget], numerics: Numerics, rim: float) -> PunchBudget:
     """What three edges, the widest first, tell of none, midway between what both powers say, as far off as these are.
 
-    Raises EquilibriumLost where they tell of no limit.
+    And farther off by what the way from the middle edge, half as far, leads elsewhere. Raises EquilibriumLost where
+    edges tell of no limit.
     """
-    wide, _, narrow = edges
+    wide, middle, narrow = edges
     changes: dict[str, Causes] = {
         cause: (*narrow.changes[cause], *_share(narrow.changes[cause]), *_share(wide.changes[cause]))
         for cause in narrow.causes
@@ -63,7 +77,8 @@ def limit(edges: Sequence[Budget], numerics: Numerics, rim: float) -> PunchBudge
     changes["edge"] = (None,)  # where some contacts are over and others not
     if len({one.separated for one in edges}) == 1:
         farther = beyond(narrow.curve, wide.curve, ONWARDS + _unsure(edges))
-        changes["edge"] = (Variation(curve, farther, 1.0),)
+        shorter = beyond(narrow.curve, middle.curve, ONWARDS_ONCE)
+        changes["edge"] = (Variation(curve, farther, 1.0), Variation(curve, shorter, SECOND_ORDER))
     counted = [one.counted for one in edges]
     work = {key: sum(one[key] for one in counted) for key in counted[0]}
     total = TotalWork(**work | {"degrees_of_freedom": max(one["degrees_of_freedom"] for one in counted)})
@@ -109,16 +124,21 @@ class PunchStrikes:
 
     def certified(self, numerics: Numerics) -> PunchBudget:
         """The contact and its bars. Raises NotReached."""
+        assert isinstance(numerics, EdgedNumerics)
         narrowest, found = self._narrowest(numerics), list[Budget]()
         for place in range(narrowest + 1 - FEWEST, narrowest + 1):
-            radius = self.radii[place] / self.radii[narrowest] * numerics.contact_radius
             strikes = RelaxingStrikes(self.edged[place], self.chosen, self.progress)
-            found.append(strikes.certified(numerics.varied(contact_radius=radius)))
+            found.append(strikes.certified(self._under(place, numerics)))
         return limit(found, numerics, self.scene.geometry.shape.flat_radius)
 
-    def _narrowest(self, numerics: Numerics) -> int:
+    def _under(self, place: int, numerics: EdgedNumerics) -> EdgedNumerics:
+        """The same settings under the edge of another place."""
+        wider = self.radii[place] / self.radii[self._narrowest(numerics)]
+        edge = edges_of(self.scene.geometry)[place]
+        return numerics.varied(edge_radius=edge, contact_radius=wider * numerics.contact_radius)
+
+    def _narrowest(self, numerics: EdgedNumerics) -> int:
         """Place of the narrowest edge that is struck with."""
-        assert isinstance(numerics, EdgedNumerics)
         return edges_of(self.scene.geometry).index(numerics.edge_radius)
 
     def finer(self, found: PunchBudget) -> Finer:
@@ -127,10 +147,11 @@ class PunchStrikes:
             return Finer(None)
         excess = {cause: float(shares_of(found, cause).max()) for cause in found.causes}
         bound = DOMINANT * min(max(excess.values()), 1.0)
-        numerics, narrower = found.numerics, self._narrowest(found.numerics) + 1
-        edges = edges_of(self.scene.geometry)
-        if excess.pop("edge") >= bound and narrower < len(edges):
-            numerics = numerics.varied(edge_radius=edges[narrower], contact_radius=self.radii[narrower])
+        numerics = found.numerics
+        assert isinstance(numerics, EdgedNumerics)
+        narrower = self._narrowest(numerics) + 1
+        if excess.pop("edge") >= bound and narrower < len(self.radii):
+            numerics = self._under(narrower, numerics)
         standing = {cause: share for cause, share in excess.items() if share >= bound}
         finer = dominant(standing, numerics, self.chosen.pinned, least=1.0) if standing else None
         return Finer(finer or (None if numerics == found.numerics else numerics))

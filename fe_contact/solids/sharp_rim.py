@@ -133,12 +133,13 @@ def power_of(values: Sequence[Array], errors: Sequence[Array]) -> Array:
     return np.asarray(np.log(np.clip(ratio, least, most)) / math.log(STEP))
 
 
-def _onwards(power: Array) -> Array:
-    """What a value still falls by from the narrowest edge on, over what it fell by from the widest to it, (n,)."""
-    return np.asarray(1.0 / (STEP ** (2.0 * power) - 1.0))
+def _onwards(power: Array, steps: int = 2) -> Array:
+    """What a value still falls by from the narrowest edge on, over what it fell by in the ``steps`` to it, (n,)."""
+    return np.asarray(1.0 / (STEP ** (steps * power) - 1.0))
 
 
-ONWARDS = float(np.mean(_onwards(np.array(ORDERS))))  # the same midway between what both powers say
+# The same midway between what both powers say: from the widest edge, from the middle one.
+ONWARDS, ONWARDS_ONCE = (float(np.mean(_onwards(np.array(ORDERS), steps))) for steps in (2, 1))
 
 
 def unsure_of(power: Array) -> Array:
