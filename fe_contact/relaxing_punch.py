@@ -181,14 +181,14 @@ def _plan(place: int, scene: Scene, given: Given) -> Plan:
     return Plan(numerics, frozenset(given) - {"tolerance"}, known.ledger)
 
 
-class Pressed(NamedTuple):
+class ExpectedContact(NamedTuple):
     """Force over modulus, m^2, and contact radius, m, under an edge."""
 
     force: float
     contact_radius: float
 
 
-def expected_contacts(scene: Scene) -> list[Pressed]:
+def expected_contacts(scene: Scene) -> list[ExpectedContact]:
     """Under the edges, the widest first, at the depth that small strains have under none. Raises NotReached.
 
     Where a layer has no curve of them to all digits, as of a half-space that presses back as hard.
@@ -202,9 +202,9 @@ def expected_contacts(scene: Scene) -> list[Pressed]:
         return _pressed(geometry, HalfSpace(), depth * float(force.force(depth) / soft.force(depth)))
 
 
-def _pressed(geometry: Geometry, target: Target, depth: float) -> list[Pressed]:
+def _pressed(geometry: Geometry, target: Target, depth: float) -> list[ExpectedContact]:
     curves = [target.load_curve(shape, geometry.material.nu) for shape in rounded_shapes(geometry)]
-    return [Pressed(float(curve.force(depth)), float(curve.contact_radius(depth))) for curve in curves]
+    return [ExpectedContact(float(curve.force(depth)), float(curve.contact_radius(depth))) for curve in curves]
 
 
 def _narrow_enough(scene: Scene, tolerance: float) -> int:
