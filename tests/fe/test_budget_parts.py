@@ -311,6 +311,7 @@ def test_the_budget_of_a_result_is_that_of_its_peak_force_relative_to_it() -> No
     share = dict(zip(CAUSES, (1e-2, 2e-3, 3e-4, 0.0), strict=True))
     values = dict.fromkeys(UNITS, 7.0) | {"peak_force": 4.0}
     found: Any = SimpleNamespace(
+        causes=CAUSES,
         numerics=SimpleNamespace(tolerance=1.0, as_dict=dict),
         quantities={name: Quantity(value, 1e-2, "") for name, value in values.items()},
         error=lambda name, cause: values[name] * share[cause],
@@ -334,6 +335,7 @@ def limits(refused: str = "", pinned: tuple[str, ...] = ()) -> Any:
 def unreached(*parts: dict[str, Quantity], tolerance: float = 1e-3, cause: str = "mesh", separated: bool = True) -> Any:
     """A contact, or several, of which one cause alone errs; the first one's quantities are those of all."""
     return SimpleNamespace(
+        causes=CAUSES,
         numerics=SimpleNamespace(tolerance=tolerance),
         parts=parts,
         quantities=parts[0],
