@@ -108,9 +108,7 @@ TABLE = (
     Constant("fe_contact.dynamics.flow", "SETTLED", MEASURED, "out of balance in flow; a force moves by a third of it"),
     Constant("fe_contact.solids.sharp_rim", "ORDERS", MEASURED, "of small strains; 0.58 is the least that shows"),
     Constant("fe_contact.solids.sharp_rim", "SHOWN", MEASURED, "beyond it a body has folded under one of three edges"),
-    Constant(
-        "fe_contact.relaxing_punch", "SECOND_ORDER", DERIVED, "of two ways to no edge, by a term of twice the power"
-    ),
+    Constant("fe_contact.relaxing_punch", "SECOND_ORDER", DERIVED, "of two ways to no edge, by twice the power"),
     Constant("fe_contact.plastic.settling", "SETTLED", MEASURED, "without inertia; with 1e-7 a force moves by 3e-6"),
     Constant(
         "fe_contact.studies.finite_length", "CORNER", DERIVED, "stress where a free end meets a base: no order more"
