@@ -56,6 +56,14 @@ class PunchBudget(Budget):
 
     rim: float
 
+    def energy_error(self, name: str) -> float:
+        """Error bar of a term of the energy account, J; infinite where a variation failed.
+
+        What does not leave with the striker stays or is lost: either by chance hardly differs from edge to edge.
+        """
+        told = super().energy_error(name)
+        return max(told, super().energy_error("out")) if name in ("stored", "viscous") else told
+
     def history(self) -> History:
         """Rows dense enough for linear interpolation, with the force's error band."""
         found = super().history()

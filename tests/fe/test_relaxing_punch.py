@@ -147,6 +147,7 @@ def test_errors_of_edges_add_up_on_the_way_onwards(numerics: EdgedNumerics) -> N
     assert found.causes == (*CAUSES, "edge")
     assert found.total("peak_force") == pytest.approx(sum(found.error("peak_force", cause) for cause in found.causes))
     assert found.counted["marches"] == 3
+    assert min(found.energy_error(name) for name in ("stored", "viscous")) >= found.energy_error("out") > 0.0
 
 
 def test_edges_of_which_some_impacts_are_over_and_others_not_tell_nothing(numerics: EdgedNumerics) -> None:
