@@ -14,6 +14,7 @@ of least energy, of which the first guess is Newton's step, shortened until the 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -137,10 +138,19 @@ class YieldingBody:
 
     def stiffness(self, here: Deformation) -> Stiffness:
         """The tangent of a body."""
-        body, flowed = self.cored, here.flowed
+        return self._tangent(here.flowed)
+
+    def _tangent(self, flowed: PlasticStep) -> Stiffness:
+        body = self.cored
         loaded = Loaded(body.core, PointAnswer(flowed.stress, flowed.tangent, flowed.energy))
         matrix = self.pattern.matrix([loaded.matrices(), body.rest[None]])
         return Stiffness(matrix, Eliminated.of(matrix, self.reach.shape[1]))
+
+    @cached_property
+    def elastic(self) -> Stiffness:
+        """Of a body in which nothing flows: no tangent is stiffer, so that steps with it always lessen the energy."""
+        none = np.zeros((5, *self.cored.core.weight.shape))
+        return self._tangent(self.yielding.flowed(none, none[:4], none[0]))
 
     def settled(
         self,
@@ -150,12 +160,22 @@ class YieldingBody:
         touching: Points,
         stiffness: Stiffness | None = None,
     ) -> FlowEquilibrium:
-        """From a displacement (2 N,) and points (n,) that touch to begin with. Raises FlowUnsettled."""
+        """From a displacement (2 N,) and points (n,) that touch to begin with. Raises FlowUnsettled.
+
+        A tangent of points that flow without hardening may lead so far that no part of its way does: then the body's
+        elastic stiffness goes on.
+        """
         here, guesses = self.displaced(start, springs, state), 0
         for _ in range(RENEWED):
             known = stiffness or self.stiffness(here)
             flow = Guesses(self, known, springs, state, anew=stiffness is None)
-            here, more, balanced = flow.closed_in(here, touching if guesses == 0 else None)
+            try:
+                here, more, balanced = flow.closed_in(here, touching if guesses == 0 else None)
+            except FlowUnsettled:
+                if stiffness is not None:
+                    raise
+                stiffness, guesses = self.elastic, guesses + 1
+                continue
             guesses += more
             if balanced:
                 return FlowEquilibrium(here, guesses, known)

@@ -9,6 +9,7 @@ import pytest
 from on_undeformed import OnUndeformed
 
 from fe_contact.assembly.forms import Array
+from fe_contact.indentation import Indentation, indent
 from fe_contact.plastic import settling
 from fe_contact.plastic.course import Course, PlasticLoading, settings
 from fe_contact.plastic.ground import Ground
@@ -16,6 +17,7 @@ from fe_contact.plastic.path import PlasticFlowLost, Presser
 from fe_contact.plastic.settling import FAR, SETTLED, FlowEquilibrium, FlowUnsettled, Stiffness, YieldingBody, slow
 from fe_contact.solids.base import State
 from fe_contact.solids.newton import Encounter, Equilibrium, balanced
+from lumped.scene.indenter import Indenter
 from lumped.shapes import Sphere
 from lumped.shapes.base import Shape
 from lumped.shapes.cone import Cone
@@ -147,3 +149,19 @@ def test_guesses_are_slow_where_they_are_far_off_or_would_be_more_than_a_stiffne
     """At the rate of the last two changes: ln(1/2)/ln(1.7/2) = 4.3 more, or 13."""
     assert slow(missed) is slowly
     assert math.log(0.5) / math.log(0.85) < settling.WORTH < math.log(0.5) / math.log(0.95)
+
+
+@pytest.mark.tenth
+def test_a_flat_end_on_what_does_not_harden_settles_as_on_what_hardens_little() -> None:
+    """Its tangents lead nowhere in places; hardening only adds to the force, here to a percent."""
+    steel = {"law": "elastic", "E": 2e11, "nu": 0.149, "yield_strength": 2.72e8}
+
+    def pressed(hardening: float) -> Indentation:
+        table = {"target.material": {**steel, "hardening_modulus": hardening}, "model.plasticity": True}
+        punch = Indenter.load("polymer-punch", {**table, "striker.radius": 1e-3})
+        return indent(punch, (3.2e-6,), {"tolerance": 0.05})
+
+    ideal, firm = pressed(0.0), pressed(2e9)
+    assert ideal.converged
+    bars = float(ideal.force_error[0] + firm.force_error[0])
+    assert -bars < float(firm.force[0] - ideal.force[0]) < 0.01 * float(firm.force[0]) + bars
