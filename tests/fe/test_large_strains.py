@@ -1092,7 +1092,7 @@ def test_what_is_not_built_is_refused_by_its_key(key: str) -> None:
         indent(pressed, (1e-5,), {"enforcement": "exact"} if "enforcement" in key else {})
 
 
-@pytest.mark.parametrize("name", ["polymer-sphere-waves", "polymer-punch", "two-spheres", "rod"])
+@pytest.mark.parametrize("name", ["polymer-sphere-waves", "two-spheres", "rod"])
 def test_impacts_that_are_not_built_are_refused(name: str) -> None:
     scene = Scene.load(name, {"model.kinematics": "finite"})
     with pytest.raises(BadInput, match="kinematics"):
