@@ -14,6 +14,7 @@ from fe_contact.budget.refine import Finer, refine
 from fe_contact.budget.variation import SAFETY
 from fe_contact.plastic.course import (
     BEYOND,
+    MOST_STEPS,
     Contrast,
     Course,
     Forces,
@@ -24,6 +25,7 @@ from fe_contact.plastic.course import (
     settings,
     within_core,
 )
+from fe_contact.plastic.path import PlasticFlowLost
 from fe_contact.progress import Progress
 from fe_contact.settings import Given, Numerics
 from lumped.indentation import Indentation
@@ -58,7 +60,7 @@ def indent(indenter: Indenter, depths: tuple[float, ...], given: Given, progress
     asked = np.array(indenter.checked(depths))
     course = Course.of(indenter, float(asked.min()), float(asked.max()))
     way = YieldingWay(course, asked, frozenset(given) - {"tolerance"}, progress)
-    found, _ = refine(way, settings(given, course))
+    found = _found(way, settings(given, course))
     radius = found.pressed.contact_radius(asked)
     indenter.check_contacts(asked, radius)
     force = np.exp(np.interp(asked, found.depth, found.logarithm))
@@ -129,6 +131,19 @@ class YieldingWay:
         loading = PlasticLoading.with_progress(course, numerics, cut, self.progress)
         loading.to(BEYOND * self.course.deepest)
         return loading
+
+
+def _found(way: YieldingWay, numerics: Numerics) -> ForcesFound:
+    """What refinement finds; where flow is lost, from twice the steps on: a perfectly plastic body gives way at once.
+
+    Raises NotReached.
+    """
+    try:
+        return refine(way, numerics)[0]
+    except PlasticFlowLost:
+        if "steps" in way.pinned or 2 * numerics.steps > MOST_STEPS:
+            raise
+        return _found(way, numerics.varied(steps=2 * numerics.steps))
 
 
 def _onwards(one: Array, fine: Array, coarse: Array, weight: float) -> Array:

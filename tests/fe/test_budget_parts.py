@@ -32,7 +32,9 @@ from fe_contact.budget.solved import SolvedBy
 from fe_contact.budget.variation import SAFETY, UNORDERED, factor
 from fe_contact.march.impacts import Followed
 from fe_contact.plastic import course
-from fe_contact.plastic.indent import YieldingWay
+from fe_contact.plastic import indent as plastic_indent
+from fe_contact.plastic.indent import YieldingWay, _found
+from fe_contact.plastic.path import PlasticFlowLost
 from fe_contact.settings import WaveNumerics
 from fe_contact.steppers.steps import Strike, Work
 from fe_contact.waves import certify
@@ -158,6 +160,30 @@ def test_what_yields_is_pressed_again_with_finer_settings_where_bars_miss_the_to
     assert (way.finer(found).settings is None) == (missed < 1.0)
     kept = YieldingWay(nothing, nothing, frozenset({"elements_per_contact", "steps"}), nothing)
     assert kept.finer(found).settings is None
+
+
+@pytest.mark.parametrize(("pinned", "holds"), [((), 80), ((), 400), (("steps",), 80)])
+def test_flow_that_is_lost_is_followed_by_twice_the_steps_where_they_are_open(
+    pinned: tuple[str, ...], holds: int, numerics: WaveNumerics, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As often as there is work for; its name says else what helps."""
+    nothing: Any = None
+    tried = list[int]()
+
+    def refined(way: object, chosen: WaveNumerics) -> tuple[str, str]:
+        tried.append(chosen.steps)
+        if chosen.steps < holds:
+            raise PlasticFlowLost(1e-5)
+        return "found", ""
+
+    monkeypatch.setattr(plastic_indent, "refine", refined)
+    way = YieldingWay(nothing, nothing, frozenset(pinned), nothing)
+    if holds > course.MOST_STEPS or pinned:
+        with pytest.raises(PlasticFlowLost, match=r"numerics\.steps"):
+            _found(way, numerics.varied(steps=20))
+    else:
+        assert _found(way, numerics.varied(steps=20)) == "found"
+    assert tried == [20, 40, 80, 160, 320][: 1 if pinned else 3 if holds == 80 else 5]
 
 
 def waves(numerics: WaveNumerics, pinned: tuple[str, ...] = ()) -> Waves:
