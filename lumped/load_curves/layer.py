@@ -32,7 +32,8 @@ BASES = ("bonded", "sliding")
 # Beyond this wavenumber (times thickness) the deficit is below rounding.
 LAST_WAVENUMBER = 22.0
 WAVE_POINTS = 24  # Gauss points of each panel of wavenumbers
-POINTS_BETWEEN = 24  # places between two bends of a face
+# Places between two bends of a face that are next to one another, and more for every thickness between them.
+POINTS_BETWEEN, POINTS_MORE = 24, 1
 
 
 @dataclass(frozen=True)
@@ -104,7 +105,7 @@ class LayerCurve(TabulatedCurve):
         smooth = growing_edges(self.layer.thickness, self.half_space.extent)
         least = self.half_space.least_radius
         inside = [edge for edge in smooth if edge > least]
-        return broken_edges([least, *inside], self.breaks, self.half_space.root_before)
+        return broken_edges([least, *inside], self.breaks, self.half_space.root_before, self.layer.thickness)
 
     @cached_property
     def breaks(self) -> tuple[float, ...]:
@@ -237,7 +238,8 @@ class DualEquation:
         if not breaks:
             return self.nodes, self.weights, self.edge, self.punch
         ends = np.array((0.0, *breaks, self.ratio))
-        share, weights = gauss(int(self.refinement * POINTS_BETWEEN))
+        longest = float(np.diff(ends).max())
+        share, weights = gauss(int(self.refinement * (POINTS_BETWEEN + POINTS_MORE * longest)))
         nodes = (ends[:-1, None] + np.diff(ends)[:, None] * np.sin(0.5 * np.pi * share) ** 2).ravel()
         each = (np.diff(ends)[:, None] * 0.5 * np.pi * np.sin(np.pi * share) * weights).ravel()
         u, density = self._spectrum

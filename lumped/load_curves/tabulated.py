@@ -37,6 +37,8 @@ FIRST_PANEL, FIRST_OF_EXTENT, GROWTH = 0.3, 0.3, 1.6
 # A panel over its distance from the last break before it, and so much more of it where no other follows; rounding, of a
 # panel: no place is nearer to its break.
 BROKEN_GROWTH, FEWER, LEAST_SHARE = 1.2, 1.5, 1e-24
+# Over the body's length, a panel that begins as a root does: two as wide err by 1e-8, one and a half by 1e-9.
+WIDEST_ROOTED = 1.0
 
 
 def panel(low: float, high: float, sample: Callable[[float], Array]) -> Array:
@@ -202,17 +204,20 @@ def _stretched(radius: Array, edges: Array, breaks: tuple[float, ...]) -> tuple[
     return np.where(rooted, low + width * root, radius), np.where(rooted, 0.5 / root, 1.0)
 
 
-def broken_edges(edges: Sequence[float], breaks: Sequence[float], before: float) -> tuple[float, ...]:
+def broken_edges(edges: Sequence[float], breaks: Sequence[float], before: float, length: float) -> tuple[float, ...]:
     """Edges of panels that begin anew at every break among them, m, and grow with the distance from the last one.
 
-    From the first break b itself it is that of -b: beyond b functions go by sqrt(a^2 - b^2), whose other end that is.
-    `before`: where the functions would break below the first edge, m, or minus infinity.
+    From the first break b itself it is that of -b: beyond b functions go by sqrt(a^2 - b^2), whose other end that is;
+    they fade within the body's `length`, m. `before`: where they would break below the first edge, m, or minus
+    infinity.
     """
     ends, found = sorted({*edges[1:], *(one for one in breaks if edges[0] < one < edges[-1])}), [edges[0]]
     for end in ends:
         while found[-1] < end:
             low = found[-1]
             wide = BROKEN_GROWTH * (low - max([before, *(one if one < low else -one for one in breaks if one <= low)]))
+            if low in breaks:
+                wide = min(wide, WIDEST_ROOTED * length)
             found.append(low + wide if low + FEWER * wide < end else end)
     return tuple(found)
 

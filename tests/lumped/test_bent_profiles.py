@@ -17,6 +17,8 @@ from lumped import BadInput, Scene, laws, simulate
 from lumped.load_curves import ConeCurve, Hertz, LayerCurve, LayerPunch, PointLayer, SneddonSphere
 from lumped.load_curves.bent import BentCurve
 from lumped.load_curves.half_space import KnownByRadius
+from lumped.load_curves.layer import deficit
+from lumped.numbers import gauss
 from lumped.shapes import Shape, Sphere
 from lumped.shapes.profile import Profile, read
 from lumped.shapes.rounded_punch import RoundedPunch
@@ -218,6 +220,35 @@ def test_a_rounded_end_of_no_width_is_a_sphere_and_of_no_edge_a_punch_on_a_layer
     force = [float(LayerCurve(BentCurve((2e-3,), (1.0 / edge,)), BONDED).force(depth)) for edge in edges]
     punch = float(LayerPunch(2e-3, BONDED).force(depth))
     assert 0.0 < force[1] / punch - 1.0 < 0.5 * (force[0] / punch - 1.0) < 0.05
+
+
+def equilibrium(curve: BentCurve, layer: PointLayer, a: float) -> tuple[float, float]:
+    """Depth and F/E* by the integral equation solved at once for phi, with phi(a) = 0, and the depth; thickness 1."""
+    nodes, weights = gauss(120)
+    crowded, each = np.sin(0.5 * np.pi * nodes) ** 2, 0.5 * np.pi * np.sin(np.pi * nodes) * weights
+    b = curve.least_radius
+    t = np.concatenate([b * crowded, b + (a - b) * crowded])
+    dt = np.concatenate([b * each, (a - b) * each])
+    u, du = (np.arange(25)[:, None] + gauss(24)[0]).ravel(), np.tile(gauss(24)[1], 25)
+    waves = np.cos(np.outer(np.append(t, a), u))
+    kernel = 2.0 / np.pi * (waves * (du * deficit(layer.nu, layer.base, u))) @ waves[:-1].T
+    matrix = np.block([[np.eye(t.size) - kernel[:-1] * dt, -np.ones((t.size, 1))], [-kernel[-1:] * dt, -np.eye(1)]])
+    *phi, depth = np.linalg.solve(matrix, -np.asarray(curve.depth(np.append(t, a))))
+    return float(depth), float(2.0 * dt @ phi)
+
+
+@pytest.mark.parametrize("thickness", [0.07, 0.1, 0.2, 1.0])
+@pytest.mark.parametrize(
+    "layer", [PointLayer(1.0, 0.3), PointLayer(1.0, 0.5), PointLayer(1.0, 0.3, "sliding")], ids=str
+)
+def test_thin_or_thick_a_layer_under_a_rounded_punch_has_its_digits(layer: PointLayer, thickness: float) -> None:
+    """From the first touch to the widest contact served: a layer over the flat end's radius as thin as that."""
+    punch = BentCurve((1.0 / thickness,), (30.0,))
+    curve = LayerCurve(punch, layer)
+    for share in (1e-3, 0.1, 0.4, 1.0):
+        a = punch.least_radius + share * (20.0 - punch.least_radius)
+        here = curve.at(a)
+        assert (here.depth, here.force) == pytest.approx(equilibrium(punch, layer, a), rel=curve.accuracy)
 
 
 def test_a_cone_with_a_small_sphere_at_its_tip_is_a_cone_on_a_layer() -> None:
