@@ -222,11 +222,14 @@ def test_a_rounded_end_of_no_width_is_a_sphere_and_of_no_edge_a_punch_on_a_layer
     assert 0.0 < force[1] / punch - 1.0 < 0.5 * (force[0] / punch - 1.0) < 0.05
 
 
-def equilibrium(curve: BentCurve, layer: PointLayer, a: float) -> tuple[float, float]:
-    """Depth and F/E* by the integral equation solved at once for phi, with phi(a) = 0, and the depth; thickness 1."""
+def equilibrium(curve: KnownByRadius, layer: PointLayer, a: float) -> tuple[float, float]:
+    """Depth and F/E* under a face with one bend, all lengths in thicknesses.
+
+    By the integral equation, solved at once for phi and the depth, with phi(a) = 0.
+    """
     nodes, weights = gauss(120)
     crowded, each = np.sin(0.5 * np.pi * nodes) ** 2, 0.5 * np.pi * np.sin(np.pi * nodes) * weights
-    b = curve.least_radius
+    (b,) = (one for one in curve.breaks if one > 0.0)
     t = np.concatenate([b * crowded, b + (a - b) * crowded])
     dt = np.concatenate([b * each, (a - b) * each])
     u, du = (np.arange(25)[:, None] + gauss(24)[0]).ravel(), np.tile(gauss(24)[1], 25)
@@ -249,6 +252,14 @@ def test_thin_or_thick_a_layer_under_a_rounded_punch_has_its_digits(layer: Point
         a = punch.least_radius + share * (20.0 - punch.least_radius)
         here = curve.at(a)
         assert (here.depth, here.force) == pytest.approx(equilibrium(punch, layer, a), rel=curve.accuracy)
+
+
+def test_under_a_contact_much_wider_than_its_bend_a_layer_has_its_digits() -> None:
+    cone, layer = SphereCone(40.0, 1.0).load_curve, PointLayer(1.0, 0.3)
+    curve = LayerCurve(cone, layer)
+    for a in (3.0, 11.0, 20.0):
+        here = curve.at(a)
+        assert (here.depth, here.force) == pytest.approx(equilibrium(cone, layer, a), rel=curve.accuracy)
 
 
 def test_a_cone_with_a_small_sphere_at_its_tip_is_a_cone_on_a_layer() -> None:
