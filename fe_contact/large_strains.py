@@ -99,7 +99,7 @@ def depth_reached(scene: Scene) -> float:
 
     The energy grows as a power of the depth, force x depth / energy.
     """
-    indenter, small = indenter_of(scene), statics.scales(scene, statics.plan(scene, {}).numerics)
+    indenter, small = indenter_of(scene), statics.expected(scene)
     if isinstance(indenter.shape, Block) and indenter.shape.uniform:
         return small.peak_depth
     radius = small.contact_radius

@@ -9,8 +9,9 @@ At finite strain this law of relaxation defines no free energy: what a branch st
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -35,11 +36,15 @@ from fe_contact.solids.newton import Encounter, Equilibrium, EquilibriumLost, ma
 from fe_contact.solids.pressing import Solid, contact_radius, exhausted
 from fe_contact.solids.relaxing import Fading, FadingLaw, doubled
 from fe_contact.steppers.steps import March, Strike, Work
+from lumped.errors import NotReached
 from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.result import LedgerEntry, Result, meets
+from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.schema import Table
+from lumped.shapes import Shape
+from lumped.targets import HalfSpace, Target
 
 ROUNDS = 3  # refinements before giving up
 SECONDS = 15.0  # processor time of an impact to 1e-3, about
@@ -310,8 +315,12 @@ def _throughout(change: Variation) -> Variation:
 def plan(scene: Scene, given: Given) -> Plan:
     """Settings and ledger; scales are those of small strains. Raises NotReached."""
     check_impact(scene, given)
-    known = statics.plan(scene, {})
-    return Plan(known.numerics.varied(**settings(given)), frozenset(given) - {"tolerance"}, known.ledger)
+    known, numerics, shape = statics.plan(scene, {}), settings(given), scene.geometry.shape
+    # contacts end beside the rim of a flat end that is rounded off: a mesh for wider ones is coarse there
+    if shape.flat_radius and scene.geometry.target.fixed_radius(shape) is None:
+        (contact,) = expected_contacts(scene, (shape,))
+        numerics["contact_radius"] = contact.contact_radius
+    return Plan(known.numerics.varied(**numerics), frozenset(given) - {"tolerance"}, known.ledger)
 
 
 def settings(given: Given) -> Table:
@@ -319,6 +328,31 @@ def settings(given: Given) -> Table:
     tolerance = tolerance_of(given)
     elements = max(COARSEST, ELEMENTS * (DEFAULT_TOLERANCE / tolerance) ** 0.5)
     return {"tolerance": tolerance, "elements_per_contact": elements, "penalty": PENALTY, **given}
+
+
+class ExpectedContact(NamedTuple):
+    """Force over modulus, m^2, and contact radius, m."""
+
+    force: float
+    contact_radius: float
+
+
+def expected_contacts(scene: Scene, faces: Sequence[Shape]) -> list[ExpectedContact]:
+    """Under these faces, at the depth that small strains have under the scene's own. Raises NotReached.
+
+    Where contacts grow wider than a layer's curve serves, as on a half-space that presses back as hard.
+    """
+    depth, geometry = statics.expected(scene).peak_depth, scene.geometry
+    try:
+        return _pressed(faces, geometry, geometry.target, depth)
+    except NotReached:
+        force, soft = (one.load_curve(geometry.shape, geometry.material.nu) for one in (geometry.target, HalfSpace()))
+        return _pressed(faces, geometry, HalfSpace(), depth * float(force.force(depth) / soft.force(depth)))
+
+
+def _pressed(faces: Sequence[Shape], geometry: Geometry, target: Target, depth: float) -> list[ExpectedContact]:
+    curves = [target.load_curve(face, geometry.material.nu) for face in faces]
+    return [ExpectedContact(float(curve.force(depth)), float(curve.contact_radius(depth))) for curve in curves]
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
 import numpy as np
 
@@ -22,7 +22,14 @@ from fe_contact.budget.solved import ImpactModel, record, solved
 from fe_contact.budget.variation import Variation
 from fe_contact.large_strains import check_impact
 from fe_contact.progress import Progress, silent
-from fe_contact.relaxing_impact import ROUNDS, SECONDS, RelaxingStrikes, settings
+from fe_contact.relaxing_impact import (
+    ROUNDS,
+    SECONDS,
+    ExpectedContact,
+    RelaxingStrikes,
+    expected_contacts,
+    settings,
+)
 from fe_contact.settings import EdgedNumerics, Given, Numerics, tolerance_of
 from fe_contact.solids.newton import EquilibriumLost
 from fe_contact.solids.sharp_rim import (
@@ -36,13 +43,10 @@ from fe_contact.solids.sharp_rim import (
     rounded_shapes,
     unsure_of,
 )
-from lumped.errors import NotReached
 from lumped.result.history import History
 from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.result import LedgerEntry, Result, meets
-from lumped.scene.geometry import Geometry
 from lumped.scene.scene import Scene
-from lumped.targets import HalfSpace, Target
 
 # What a term of twice the power leaves of the way from the widest edge, over what that differs from the way from the
 # middle one: 1 + (1 - 16)/3 = -4 over it less 1 + (1 - 4) = -2, where an edge adds half as much as the one before.
@@ -128,7 +132,7 @@ class PunchStrikes:
     @cached_property
     def radii(self) -> tuple[float, ...]:
         """Of the contacts that are expected under them, m."""
-        return tuple(one.contact_radius for one in expected_contacts(self.scene))
+        return tuple(one.contact_radius for one in _expected(self.scene))
 
     def certified(self, numerics: Numerics) -> PunchBudget:
         """The contact and its bars. Raises NotReached."""
@@ -182,44 +186,23 @@ def plan(scene: Scene, given: Given) -> Plan:
 
 def _plan(place: int, scene: Scene, given: Given) -> Plan:
     """With the narrowest edge of a place. Raises NotReached."""
-    known, radius = statics.plan(scene, {}), expected_contacts(scene)[place].contact_radius
+    known, radius = statics.plan(scene, {}), _expected(scene)[place].contact_radius
     edge = {"contact_radius": radius, "edge_radius": edges_of(scene.geometry)[place]}
     steps = {"steps": known.numerics.steps // FLAT_STEPS}  # which no edge asks for
     numerics = EdgedNumerics(**known.numerics.as_dict() | steps | settings(given) | edge)
     return Plan(numerics, frozenset(given) - {"tolerance"}, known.ledger)
 
 
-class ExpectedContact(NamedTuple):
-    """Force over modulus, m^2, and contact radius, m, under an edge."""
-
-    force: float
-    contact_radius: float
-
-
-def expected_contacts(scene: Scene) -> list[ExpectedContact]:
-    """Under the edges, the widest first, at the depth that small strains have under none. Raises NotReached.
-
-    Where a layer has no curve of them to all digits, as of a half-space that presses back as hard.
-    """
-    depth = statics.scales(scene, statics.plan(scene, {}).numerics).peak_depth
-    geometry = scene.geometry
-    try:
-        return _pressed(geometry, geometry.target, depth)
-    except NotReached:
-        force, soft = (one.load_curve(geometry.shape, geometry.material.nu) for one in (geometry.target, HalfSpace()))
-        return _pressed(geometry, HalfSpace(), depth * float(force.force(depth) / soft.force(depth)))
-
-
-def _pressed(geometry: Geometry, target: Target, depth: float) -> list[ExpectedContact]:
-    curves = [target.load_curve(shape, geometry.material.nu) for shape in rounded_shapes(geometry)]
-    return [ExpectedContact(float(curve.force(depth)), float(curve.contact_radius(depth))) for curve in curves]
+def _expected(scene: Scene) -> list[ExpectedContact]:
+    """Contacts under the edges, the widest first. Raises NotReached."""
+    return expected_contacts(scene, rounded_shapes(scene.geometry))
 
 
 def _narrow_enough(scene: Scene, tolerance: float) -> int:
     """Place of the narrowest of three edges that at small strains leave no more than a share of the tolerance; the last
     where none do. Raises NotReached.
     """
-    unsure, force = float(unsure_of(np.array(ORDERS[0]))), [one.force for one in expected_contacts(scene)]
+    unsure, force = float(unsure_of(np.array(ORDERS[0]))), [one.force for one in _expected(scene)]
     for place in range(FEWEST - 1, len(force)):
         if unsure * (force[place + 1 - FEWEST] / force[place] - 1.0) <= SHARE * tolerance:
             return place

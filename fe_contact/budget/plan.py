@@ -164,6 +164,11 @@ def _flat_steps(tolerance: float) -> float:
     return max(FLAT_STEPS * math.pow(min(DEFAULT_TOLERANCE / tolerance, 1.0), 1.0 / FLAT_ORDER), 1.0)
 
 
+def expected(scene: Scene) -> mdr.ImpactScales:
+    """Scales of a scene that every plan begins with. Raises NotReached, BadInput."""
+    return scales(scene, _settings(scene, DEFAULT_TOLERANCE))
+
+
 def scales(scene: Scene, numerics: Numerics) -> mdr.ImpactScales:
     """Of a scene; ``numerics`` but for the settings that are coarse. Raises NotReached, BadInput."""
     geometry = scene.geometry

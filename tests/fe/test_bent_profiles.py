@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import fe_contact
+from fe_contact import reference
 from fe_contact.indentation import indent
 from lumped import Scene, laws, simulate
 from lumped.materials import Material, Relaxation
@@ -135,12 +136,43 @@ def test_an_edge_too_narrow_to_be_resolved_has_the_bar_of_a_rim(
     assert abs(pressed.force[0] - exact) <= pressed.force_error[0]
 
 
+def strained_much(edge: float, target: HalfSpace | Layer) -> Scene:
+    """Something that relaxes struck by a flat end of radius 2 mm with this edge, m."""
+    base = Scene.load("polymer-sphere")
+    return replace(base, shape=RoundedPunch(2e-3, edge), target=target, model=replace(base.model, kinematics="finite"))
+
+
 @pytest.mark.tenth
 @pytest.mark.parametrize("target", [HalfSpace(), Layer(0.01, "bonded")])
 def test_a_relaxing_impact_by_a_narrow_edge_takes_few_iterations_a_step(target: HalfSpace | Layer) -> None:
     """Its contact hardly widens, and is begun so: on the whole body every iteration is dear."""
-    base = Scene.load("polymer-sphere")
-    scene = replace(base, shape=RoundedPunch(2e-3, 3e-4), target=target, model=replace(base.model, kinematics="finite"))
-    found = fe_contact.run(scene, tolerance=3e-2)
+    found = fe_contact.run(strained_much(3e-4, target), tolerance=3e-2)
     assert found.converged
     assert found.work["iterations"] <= 4 * found.work["contact_problems"]
+
+
+@pytest.mark.parametrize("base", ["bonded", "sliding"])
+@pytest.mark.parametrize("thickness", [1.4e-4, 2e-4, 4e-4, 2e-3])
+def test_under_a_rounded_end_a_mesh_is_made_for_no_wider_a_contact_than_is_expected(
+    thickness: float, base: str
+) -> None:
+    """On thin layers too; it ends between those of elastic layers, as stiff as at once and as in the end."""
+    scene = strained_much(2e-5, Layer(thickness, base))
+    curve = scene.geometry.target.load_curve(scene.shape, scene.geometry.material.nu)
+    depths, brought = np.linspace(0.0, 0.2 * thickness, 400), 0.5 * scene.reduced_mass * scene.velocity**2
+    sudden, slow = scene.contact_modulus.glassy, scene.contact_modulus.relaxed
+    deepest = [np.interp(brought / modulus, curve.energy(depths), depths) for modulus in (sudden, slow)]
+    planned = reference.plan(scene, {}).numerics.contact_radius
+    least, most = curve.contact_radius(deepest) - 2e-3
+    assert least < planned - 2e-3 < most
+
+
+@pytest.mark.tenth
+def test_a_relaxing_layer_under_a_narrow_edge_has_true_bars(uncovered: Callable[..., dict[str, float]]) -> None:
+    """On meshes made for much wider contacts, all that tell the bar err alike beside the rim."""
+    scene = strained_much(1e-5, Layer(0.01, "bonded"))
+    loose = fe_contact.run(scene, tolerance=1e-2)
+    tight = fe_contact.run(scene, tolerance=3e-3, numerics={"elements_per_contact": 4.0, "penalty": 4000.0})
+    assert loose.converged
+    assert tight.converged
+    assert not uncovered(loose, tight)
