@@ -157,7 +157,7 @@ def strained_fields(result: Result, solid: Solid, found: Equilibrium) -> Fields:
     shadow = ((1.0 + along) * (1.0 + around))[nodes]
     return Fields(
         time=result.quantities["peak_time"].value or 0.0,
-        depth=solid.unit * found.balance.way / solid.lead,
+        depth=solid.unit * found.balance.depth / solid.lead,
         contact_radius=solid.unit * radius,
         points=solid.unit * place,
         triangles=np.searchsorted(nodes, triangles),

@@ -9,6 +9,7 @@ At finite strain this law of relaxation defines no free energy: what a branch st
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, NamedTuple
@@ -53,6 +54,8 @@ PENALTY = 1000.0  # stiffness of the contact
 SMALLEST = 0.2  # contact over the widest one for which the mesh is made
 LAST = 1e-3  # of the expected contact time: with less left the end is read off the trend
 ORDER = 2  # of a step
+SWING = 16.0  # of the phase of what swings on the contact, over the steps: contacts that end have smaller ones
+LARGEST_SWING = 1.6  # of that phase: at 2 the rule is not stable
 FEWEST = 5  # instants that tell a trend to the end
 
 
@@ -178,8 +181,8 @@ class Marcher:
         length = numerics.contact_time * step_length(len(instants) - 1, numerics.steps, numerics.peak_share)
         if left is not None:
             length = min(length, left * share_of_rest(left / numerics.contact_time, numerics.steps))
-        length = min(length, strike.end_time - here.time)
         slowed = self.scale / (strike.mass * self.solid.unit)
+        length = min(length, strike.end_time - here.time, self._steady(here, slowed))
         pull = strike.gravity / self.solid.unit
         depth = here.depth + length * (here.velocity + 0.5 * length * (pull - slowed * here.force))
         if depth <= 0.0:  # a step beyond the first touch, where nothing presses
@@ -207,6 +210,12 @@ class Marcher:
             work=here.work + 0.5 * float((here.borne + borne + (here.force + force) * datum) @ moved),
             iterations=here.iterations + found.iterations,
         )
+
+    def _steady(self, here: Instant, slowed: float) -> float:
+        """Length of a step, s, in which a striker that its weight holds down swings by little: the rule is explicit."""
+        if here.found is None or here.found.stiffness <= 0.0:
+            return np.inf
+        return min(SWING / self.numerics.steps, LARGEST_SWING) / math.sqrt(slowed * here.found.stiffness)
 
     def _equilibrium(self, here: Instant, depth: float, fading: Fading) -> Equilibrium:
         """At a depth after what is remembered. Raises EquilibriumLost."""
@@ -283,14 +292,20 @@ class Marcher:
         return found
 
     def _stored_below(self, instants: list[Instant]) -> float:
-        """What a datum's way up holds of that: far below it goes, as the network does, with the force alone."""
+        """What a datum's way up holds of that: it goes, as the network does, with the force alone, and as much work of
+        it as was done up to the peak.
+        """
         if not self.body.follows:
             return 0.0
-        (peak, branches), network = max(instants, key=lambda one: one.force).datum, self.law.network
+        network = self.law.network
         lasting, shares = network.relaxed / network.glassy, np.array(network.moduli) / network.glassy
-        stiffness = max(one.force for one in instants) / -(lasting * peak + branches.sum())
-        last, branches = instants[-1].datum
-        return float(0.5 * stiffness * (lasting * last**2 + (branches**2 / shares).sum()))
+        force = np.array([one.force for one in instants])
+        way = np.array([float(one.datum[0]) for one in instants])
+        answer = np.array([float(lasting * one.datum[0] + one.datum[1].sum()) for one in instants])
+        loading = slice(int(force.argmax()) + 1)
+        stiffness = -np.trapezoid(force[loading], way[loading]) / np.trapezoid(answer[loading], way[loading])
+        _, branches = instants[-1].datum
+        return float(0.5 * stiffness * (lasting * way[-1] ** 2 + (branches**2 / shares).sum()))
 
 
 def at_peak(scene: Scene, result: Result) -> tuple[Solid, Equilibrium]:

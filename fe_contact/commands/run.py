@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -33,15 +32,15 @@ def execute(args: argparse.Namespace) -> int:
     larger = _larger(args, scene, table)
     asked = scene if larger is None else larger.scene
     _check(args, asked)
-    with base.recorded(partial(write_failure, where, asked, args.method)):
-        while True:
-            try:
-                return _impact(args, asked, table, where, [] if larger is None else [str(larger)])
-            except NotReached as refused:
-                if larger is None or not larger.taken or args.method != "fe":
-                    raise
-                larger = larger.less(scene, refused)
-                asked = larger.scene
+    while True:
+        try:
+            return _impact(args, asked, table, where, [] if larger is None else [str(larger)])
+        except NotReached as refused:
+            if larger is None or not larger.taken or args.method != "fe":
+                write_failure(where, asked, args.method, str(refused))
+                raise
+            larger = larger.less(scene, refused)
+            asked = larger.scene
 
 
 def _larger(args: argparse.Namespace, scene: Scene, table: Table) -> SufficientModel | None:

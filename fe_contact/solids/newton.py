@@ -235,9 +235,15 @@ class Equilibrium:
         Along the same way it is the slope of the energy; what a datum gives way to that lengthens the way.
         """
         touch, datum = self.balance.touch, self.balance.encounter.body.datum
-        by_way = self.rate / (1.0 - datum @ self.rate)
-        hardening = touch.stiffening[1::2].sum() + touch.stiffening @ by_way
-        return float(2.0 * touch.force + touch.forces @ by_way - hardening * (datum @ self.softened))
+        by_way = 1.0 - datum @ self.rate
+        given_way = self.stiffness / by_way * (datum @ self.softened)
+        return float(2.0 * touch.force + touch.forces @ self.rate / by_way - given_way)
+
+    @property
+    def stiffness(self) -> float:
+        """Of the force, by the depth."""
+        stiffening, datum = self.balance.touch.stiffening, self.balance.encounter.body.datum
+        return float(stiffening[1::2].sum() * (1.0 - datum @ self.rate) + stiffening @ self.rate)
 
     @property
     def rigid(self) -> tuple[Array, Loaded]:

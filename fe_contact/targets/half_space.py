@@ -52,7 +52,7 @@ ENDS = ("base", "side")  # of a box of it
 # Half-plane of large strains: what goes as their square leaves an error of first order in the size, so that its size
 # goes as the square of the setting, and is the same as at small strains where that is least.
 FARTHER = 0.5
-FARTHEST = 1e5  # that size at most: strains are rounding there
+FARTHEST = 5e3  # that size over the setting at most, unless small strains ask for more: strains are rounding there
 DATUM = 0.6  # size of the mesh over the datum's depth, per far radius of the settings, which is 2 at least
 
 
@@ -199,7 +199,8 @@ def _plane_solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidM
     datum, zone = getattr(indenter.target, "datum_depth", None), Zone.of(radii, FINITE_MARGIN)
     assert datum is not None
     elements, depth = FINITE_REFINEMENT * numerics.elements_per_contact, datum / zone.reference
-    size = min(FARTHER * numerics.far_radius**2 * max(1.0, DATUM * depth), FARTHEST)
+    least = max(1.0, DATUM * depth)
+    size = numerics.far_radius * max(min(FARTHER * numerics.far_radius * least, FARTHEST), least)
     body = _plane_body(elements, numerics.order, zone.smallest, size)
     return SolidMesh(body, zone.reference, datum=_upwards(body.basis, depth))
 

@@ -36,8 +36,9 @@ def half_plane_strains(nu: float, depth: float, half_width: float, datum: float)
     """
     nu, below = min(nu, LAST_NU), datum / half_width
     root = hypot(1.0, below)
-    sunk = (1.0 - nu) * asinh(below) - nu * below * (root - below)  # 2 G depth/(p a)
-    slope = ((1.0 - nu) * below - nu * below * ((1.0 + 2.0 * below**2) - 2.0 * below * root)) / root
+    left = 1.0 / (root + below)  # root - below, to all digits
+    sunk = (1.0 - nu) * asinh(below) - nu * below * left  # 2 G depth/(p a)
+    slope = ((1.0 - nu) * below - nu * below * left**2) / root
     pressure = 2.0 * depth / half_width / sunk
     force, stiffening = 0.5 * pi * pressure, 2.0 / (2.0 - slope / sunk)  # a power of the depth
     z, area = _points(below)
@@ -77,7 +78,8 @@ class Potentials:
 def _hertz(z: Complex) -> Potentials:
     """Of a pressure sqrt(1 - x^2)."""
     root = np.sqrt(z - 1.0) * np.sqrt(z + 1.0)
-    phi, slope = 0.5j * (z - root), 0.5j * (1.0 - z / root)
+    phi = 0.5j / (z + root)  # z - root = 1/(z + root)
+    slope = -phi / root
     return Potentials(z, phi, slope, -z * slope)
 
 

@@ -20,9 +20,8 @@ from lumped.numbers import Array, gauss
 
 STEP = 1e-3  # rounding: largest strain at which odd differences tell the cubic terms
 LAST_NU = 0.4999  # nearer to 1/2 nothing changes but digits
-FIRM = (
-    0.5  # measured, of O-rings: with less left of the bulk modulus first order is out by 2 to 5, with more by 2 at most
-)
+# Measured, of O-rings: with less left of the bulk modulus first order is out by 2 to 5, with more by 2 at most.
+FIRM = 0.5
 ALIKE = np.array([1.0, 0.0, 0.0, 1.0, 1.0])  # the same stretch in every direction
 # Lengths in contact radii a: a layer as thick is a half-space; the body is followed to so many beside the contact and
 # below it, or to so many thicknesses h beside it; the shortest wave is as long as a over the one, or h over the other.

@@ -30,7 +30,7 @@ from fe_contact.steppers.steps import Strike
 from lumped import BadInput, Scene
 from lumped.materials import Material, Relaxation
 from lumped.materials.energies.base import ENERGIES, energy_of, strained
-from lumped.scene.tables import Model
+from lumped.scene.tables import Model, Motion
 from lumped.shapes.cylinder import Cylinder
 from lumped.shapes.prism import Prism
 from lumped.targets import HalfSpace
@@ -215,6 +215,17 @@ def test_a_light_impact_below_a_datum_is_that_of_small_strains() -> None:
     )
 
 
+def test_what_hardly_relaxes_loses_nothing_below_a_near_datum_either() -> None:
+    """Amid contact, whose half-width is half of the datum's depth."""
+    material, motion = Material(Relaxation(1e7, (10.0,), (1.0,)), 0.4), Motion(end_time=4.7e-4)
+    model = Model(kinematics="finite")
+    scene = Scene(Cylinder(0.01, 1.0), 1.0, 1.0, material, target=HalfSpace(0.004), model=model, motion=motion)
+    coarse = {"elements_per_contact": 2.0, "order": 3, "penalty": 300.0, "steps": 24}
+    energy = Marcher.of(scene, plan(scene, coarse).numerics).march().energy
+    assert energy["stored"] > 0.3 * energy["in"]
+    assert energy["viscous"] == pytest.approx(0.0, abs=0.01 * energy["in"])
+
+
 def block_impact(scene: Scene) -> tuple[float, float]:
     """Peak force, N, and restitution of neo-Hooke's block, its sides free, by its ordinary differential equation."""
     material, block = scene.geometry.material, scene.geometry.shape
@@ -306,7 +317,8 @@ class OnSpring(Marcher):
         encounter = SimpleNamespace(body=SimpleNamespace(forces=lambda loaded, displacement: displacement))
         balance = SimpleNamespace(encounter=encounter, touch=SimpleNamespace(energy=0.0))
         force = np.maximum(depth - self.late, 0.0) ** 1.5
-        return SimpleNamespace(rigid_force=force, rigid=rigid, iterations=1, balance=balance)
+        known = {"rigid_force": force, "stiffness": 1.5 * force ** (1.0 / 3.0)}
+        return SimpleNamespace(**known, rigid=rigid, iterations=1, balance=balance)
 
     def _stored(self, last: Instant) -> float:
         return 0.0
@@ -420,6 +432,25 @@ def test_a_striker_that_leaves_within_a_step_is_slowed_by_half_of_the_force_that
     assert there.depth < 0.0
     assert unit * there.velocity == pytest.approx(-0.6 + length * (gravity - 0.5 * scale * 0.2 / mass))
     assert (there.force, there.impulse) == (0.0, 5.0)
+
+
+def test_a_striker_that_its_weight_holds_down_swings_on_as_it_began(
+    settings_of: Callable[..., Numerics], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Long after the contact time that was expected: steps of a contact that ends would have grown past its swing."""
+    monkeypatch.setattr(relaxing_impact, "contact_radius", lambda balance: 1.0)
+    unit, scale, mass = 0.02, 3.0, 0.4
+    strike = Strike(lambda r: r**2, mass, 0.05, 9.81, Relaxation(1.0), 1e3)
+    spring = on_spring(strike, settings_of(strike, steps=60).varied(contact_time=0.13, peak_share=0.5), unit, scale)
+    rest = (mass * 9.81 / scale) ** (2.0 / 3.0)
+    found = spring._equilibrium(spring._touch(), 0.9 * rest, Fading.over(spring.law.network, 1.0))
+    here = replace(spring._touch(), depth=0.9 * rest, velocity=0.0, force=found.rigid_force, found=found)
+    instants, depths = [here] * 300, list[float]()
+    for _ in range(300):
+        instants = [*instants, spring._next(instants, None)]
+        depths.append(instants[-1].depth / rest)
+    assert 1.09 < max(depths) < 1.11
+    assert 0.89 < min(depths) < 0.91
 
 
 @dataclass(frozen=True, eq=False)
