@@ -206,3 +206,13 @@ def test_a_contact_that_outgrows_its_mesh_is_pressed_on_a_wider_one() -> None:
     at_once = press(pressed.elastic(False), depths, 1.5 * radii, numerics)
     assert found.contact_radius[-1] > 1.15 * radii[-1]
     assert found.force == pytest.approx(at_once.force, rel=2e-3)
+
+
+@pytest.mark.parametrize("datum", [30.0, 1e3, 1e8])
+def test_a_datum_far_down_is_answered_or_refused_by_its_size(datum: float) -> None:
+    scene = Scene(Cylinder(0.01, 1.0), 1.0, 0.5, Material(Relaxation(1e7), 0.45), target=HalfSpace(datum), model=LARGE)
+    if datum < 100.0:
+        assert run(scene, tolerance=1e-2).converged
+    else:
+        with pytest.raises(BadInput, match=r"target\.datum_depth: thickness over the largest contact"):
+            run(scene, tolerance=1e-2)
