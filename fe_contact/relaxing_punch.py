@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import ClassVar
 
 import numpy as np
 
@@ -23,7 +22,6 @@ from fe_contact.budget.variation import Variation
 from fe_contact.large_strains import check_impact
 from fe_contact.progress import Progress, silent
 from fe_contact.relaxing_impact import (
-    ROUNDS,
     SECONDS,
     ExpectedContact,
     RelaxingStrikes,
@@ -44,8 +42,7 @@ from fe_contact.solids.sharp_rim import (
     unsure_of,
 )
 from lumped.result.history import History
-from lumped.result.model_ledger import Peak, model_ledger
-from lumped.result.result import LedgerEntry, Result, meets
+from lumped.result.result import Result, meets
 from lumped.scene.scene import Scene
 
 # What a term of twice the power leaves of the way from the widest edge, over what that differs from the way from the
@@ -116,18 +113,8 @@ def _unsure(edges: Sequence[Budget]) -> float:
 
 
 @dataclass(frozen=True)
-class PunchStrikes:
+class PunchStrikes(RelaxingStrikes):
     """The way of a punch: three edges around it, each the way of an impact by itself."""
-
-    scene: Scene
-    chosen: Plan
-    progress: Progress
-    rounds: ClassVar[int] = ROUNDS
-
-    @cached_property
-    def edged(self) -> tuple[Scene, ...]:
-        """With each of the edges, the widest first."""
-        return edged(self.scene)
 
     @cached_property
     def radii(self) -> tuple[float, ...]:
@@ -137,9 +124,9 @@ class PunchStrikes:
     def certified(self, numerics: Numerics) -> PunchBudget:
         """The contact and its bars. Raises NotReached."""
         assert isinstance(numerics, EdgedNumerics)
-        narrowest, found = self._narrowest(numerics), list[Budget]()
+        scenes, narrowest, found = edged(self.scene), self._narrowest(numerics), list[Budget]()
         for place in range(narrowest + 1 - FEWEST, narrowest + 1):
-            strikes = RelaxingStrikes(self.edged[place], self.chosen, self.progress)
+            strikes = RelaxingStrikes(scenes[place], self.chosen, self.progress)
             found.append(strikes.certified(self._under(place, numerics)))
         return limit(found, numerics, self.scene.geometry.shape.flat_radius)
 
@@ -153,7 +140,7 @@ class PunchStrikes:
         """Place of the narrowest edge that is struck with."""
         return edges_of(self.scene.geometry).index(numerics.edge_radius)
 
-    def finer(self, found: PunchBudget) -> Finer:
+    def finer(self, found: Budget) -> Finer:
         """Less of the causes that stand in the way, narrower edges among it."""
         if meets(found.quantities, found.numerics.tolerance):
             return Finer(None)
@@ -167,10 +154,6 @@ class PunchStrikes:
         standing = {cause: share for cause, share in excess.items() if share >= bound}
         finer = dominant(standing, numerics, self.chosen.pinned, least=1.0) if standing else None
         return Finer(finer or (None if numerics == found.numerics else numerics))
-
-    def ledger(self, found: PunchBudget) -> tuple[LedgerEntry, ...]:
-        """What the model leaves out of the impact that was found."""
-        return model_ledger(self.scene, Peak.of(found.quantities, found.history()))
 
 
 def edged(scene: Scene) -> tuple[Scene, ...]:

@@ -45,6 +45,7 @@ from fe_contact.steppers.scaled_surface import ScaledSurface
 from fe_contact.targets.base import MeshedTarget
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
+from lumped.targets import HalfSpace, Target
 from meshes.half_space import WAVE_GROWTH
 
 FINER = 2.0  # elements at the surface over those which the growth into the body is for, where strains are large
@@ -121,20 +122,17 @@ def _rimmed_operator(poisson: float, elements: float, order: int, far_radius: fl
 
 def _plane_still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     """The half-plane at rest; ``radii``, m: between which the contacts will end."""
-    datum, zone = getattr(indenter.target, "datum_depth", None), Zone.of(radii)
-    assert datum is not None
-    elements, depth = LINE_REFINEMENT * numerics.elements_per_contact, datum / zone.reference
-    size = numerics.far_radius * max(1.0, DATUM * depth)
+    zone = Zone.of(radii)
+    elements, depth = LINE_REFINEMENT * numerics.elements_per_contact, _datum(indenter.target) / zone.reference
+    size = numerics.far_radius * _least_size(depth)
     surface = _plane_surface(indenter.material.nu, elements, numerics.order, zone.smallest, depth, size)
     return FixedStill(surface, indenter, numerics, zone.reference, zone.reference, np.inf)
 
 
 def _plane_struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
     """The half-plane in an impact whose contact grows from nothing to the half-width that the settings expect."""
-    datum = getattr(geometry.target, "datum_depth", None)
-    assert datum is not None
-    depth = datum / numerics.contact_radius
-    elements, size = STRUCK_REFINEMENT * numerics.elements_per_contact, numerics.far_radius * max(1.0, DATUM * depth)
+    depth = _datum(geometry.target) / numerics.contact_radius
+    elements, size = STRUCK_REFINEMENT * numerics.elements_per_contact, numerics.far_radius * _least_size(depth)
     return _plane_surface(geometry.material.nu, elements, numerics.order, smallest_struck(geometry.shape), depth, size)
 
 
@@ -153,6 +151,18 @@ def _plane_operator(
     basis = basis_on(made(meshes.layer, elements, smallest, size, size), order)
     matrix, fixed = system_matrix(basis, poisson, ENDS, plane=True), held(basis, along=("axis",), across=())
     return condensed(basis, matrix, fixed, poisson, flat(basis, 2), _upwards(basis, datum)).operator
+
+
+def _datum(target: Target) -> float:
+    """How far below touch it lies, m."""
+    assert isinstance(target, HalfSpace)
+    assert target.datum_depth is not None
+    return target.datum_depth
+
+
+def _least_size(datum: float) -> float:
+    """Of a mesh in which a datum so far down lies, per far radius of the settings; lengths in contact radii."""
+    return max(1.0, DATUM * datum)
 
 
 def _upwards(basis: Basis, depth: float) -> Matrix:
@@ -196,10 +206,9 @@ def _stiffness(
 
 def _plane_solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:
     """The half-plane for large strains, relative to its datum."""
-    datum, zone = getattr(indenter.target, "datum_depth", None), Zone.of(radii, FINITE_MARGIN)
-    assert datum is not None
-    elements, depth = FINITE_REFINEMENT * numerics.elements_per_contact, datum / zone.reference
-    least = max(1.0, DATUM * depth)
+    zone = Zone.of(radii, FINITE_MARGIN)
+    elements, depth = FINITE_REFINEMENT * numerics.elements_per_contact, _datum(indenter.target) / zone.reference
+    least = _least_size(depth)
     size = numerics.far_radius * max(min(FARTHER * numerics.far_radius * least, FARTHEST), least)
     body = _plane_body(elements, numerics.order, zone.smallest, size)
     return SolidMesh(body, zone.reference, datum=_upwards(body.basis, depth))

@@ -90,7 +90,7 @@ def _buried_force(z: Complex, place: complex, nu: float) -> Potentials:
     alone = Potentials(
         z, -whole / own, whole / own**2, share * np.conj(whole) / own - whole * place.conjugate() / own**2
     )
-    # With F*(z) = conj(F(conj z)), of phi and psi alone: the surface bears none where phi_2 = -(z phi* + psi*)' and ...
+    # F*(z) = conj(F(conj z)) of those: no surface stress by phi_2 = -(z phi*)' - psi*, psi_2 = -phi* - (z phi_2)'.
     mirrored, first, second = (sign * np.conj(whole) / image**power for sign, power in ((-1.0, 1), (1.0, 2), (-2.0, 3)))
     psi = share * whole / image - np.conj(whole) * place / image**2
     psi_slope = -share * whole / image**2 + 2.0 * np.conj(whole) * place / image**3
@@ -101,9 +101,7 @@ def _buried_force(z: Complex, place: complex, nu: float) -> Potentials:
 
 def _points(below: float) -> tuple[Complex, Array]:
     """Points of one half of the half-plane, and the areas of both halves that they stand for, each (n,)."""
-    edges = sorted({0.0, *NEAR, *(share * below for share in BESIDE_DATUM)})
-    while edges[-1] < FARTHEST * max(below, 1.0):
-        edges.append(2.0 * edges[-1])
+    edges = sorted({0.0, *NEAR, *(share * below for share in BESIDE_DATUM), FARTHEST * max(below, 1.0)})
     edges = [place for low, high in pairwise(edges) for place in _doubling(low, high)] + edges[-1:]
     (share, weight), (turn, wide) = gauss(POINTS), gauss(ANGLES)
     low, long = np.array(edges[:-1]), np.diff(edges)

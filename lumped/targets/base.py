@@ -58,7 +58,8 @@ class Target(Record, ABC):
 
     `deformable`: whether it has a material. `has_inertia`: whether its waves can be followed; `only_with_inertia`:
     whether nothing is left of it without them. `large_strains`: whether they are built of it, or of what strikes it, at
-    all. `endless`: whether it goes on beyond any mesh.
+    all. `endless`: whether it goes on beyond any mesh. `pinched`: whether it gives way as a whole where its material
+    does, nothing beside it holding.
     """
 
     has_inertia: ClassVar[bool] = False
@@ -66,9 +67,7 @@ class Target(Record, ABC):
     deformable: ClassVar[bool] = True
     large_strains: ClassVar[bool] = False
     endless: ClassVar[bool] = False
-    pinched: ClassVar[bool] = (
-        False  # whether it gives way as a whole where its material does, nothing beside it holding
-    )
+    pinched: ClassVar[bool] = False
     through: ClassVar[str] = ""  # what no depth may reach, where that is the height pressed
     lead: ClassVar[float] = 1.0  # how much an overlap at the first touch grows per depth
     strikers: ClassVar[tuple[str, ...]] = ()  # names of the only shapes that strike it, where it is for few
